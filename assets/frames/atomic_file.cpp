@@ -1,0 +1,112 @@
+#include "assets/frames/atomic_file.h"
+
+#include "assets/base/error.h"
+#include "assets/frames/frame_cache.h"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string_view>
+#include <system_error>
+
+namespace assets {
+namespace {
+
+constexpr std::string_view temporary_mark = ".tmp.";
+
+[[noreturn]] void fail(const std::filesystem::path& path, int reason) {
+    throw Error(ErrorKind::Resources,
+                fmt::format("cannot write {}: {}; what was written before is intact, and the same "
+                            "command goes on from there",
+                            path.string(),
+                            std::generic_category().message(reason)));
+}
+
+/// Repeats a system call that a signal cut short.
+template <class Call>
+auto uninterrupted(Call call) {
+    auto result = call();
+    while (result == -1 && errno == EINTR)
+        result = call();
+    return result;
+}
+
+/// A file descriptor that is closed on every way out.
+class Descriptor {
+  public:
+    Descriptor(const std::filesystem::path& path, int flags)
+        : value_(uninterrupted([&] { return ::open(path.c_str(), flags | O_CLOEXEC, 0666); })) {}
+
+    ~Descriptor() { close(); }
+
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+
+    int value() const { return value_; }
+
+    /// False where the system reports a late failure to write (network file systems).
+    bool close() {
+        const int closing = value_;
+        value_ = -1;
+        return closing < 0 || ::close(closing) == 0;
+    }
+
+  private:
+    int value_ = -1;
+};
+
+/// Writes and flushes a new file; returns 0 or the system's reason.
+int write_flushed(const std::filesystem::path& path, std::string_view bytes) {
+    Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC);
+    if (file.value() < 0)
+        return errno;
+    while (!bytes.empty()) {
+        const ssize_t n =
+            uninterrupted([&] { return ::write(file.value(), bytes.data(), bytes.size()); });
+        if (n <= 0)
+            return n < 0 ? errno : EIO;
+        bytes.remove_prefix(static_cast<std::size_t>(n));
+    }
+    if (uninterrupted([&] { return ::fsync(file.value()); }) != 0)
+        return errno;
+    return file.close() ? 0 : errno;
+}
+
+}  // namespace
+
+std::optional<std::string> name_of_temporary(const std::string& name) {
+    const std::size_t mark = name.rfind(temporary_mark);
+    if (mark == std::string::npos || mark < 2 || name.front() != '.')
+        return {};
+    const std::string process = name.substr(mark + temporary_mark.size());
+    if (process.empty() || process.find_first_not_of("0123456789") != std::string::npos)
+        return {};
+    return name.substr(1, mark - 1);
+}
+
+void sync_folder(const std::filesystem::path& folder) {
+    const Descriptor opened(folder, O_RDONLY | O_DIRECTORY);
+    if (opened.value() < 0)
+        fail(folder, errno);
+    // EINVAL: a file system that cannot flush folders, and so gives no more than it can.
+    if (uninterrupted([&] { return ::fsync(opened.value()); }) != 0 && errno != EINVAL)
+        fail(folder, errno);
+}
+
+void write_atomically(const std::filesystem::path& path, const std::string& bytes) {
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    const std::filesystem::path temporary =
+        folder / fmt::format(".{}{}{}", path.filename().string(), temporary_mark, ::getpid());
+    int reason = write_flushed(temporary, bytes);
+    if (reason == 0 && ::rename(temporary.c_str(), path.c_str()) != 0)
+        reason = errno;
+    if (reason != 0) {
+        ::unlink(temporary.c_str());
+        fail(path, reason);
+    }
+    sync_folder(folder);
+}
+
+}  // namespace assets

@@ -1,0 +1,25 @@
+// The names of a cache's files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace assets {
+
+inline constexpr const char* manifest_name = "manifest.json";
+inline constexpr const char* surfaces_name = "surfaces.bin";
+inline constexpr const char* checkpoint_name = "checkpoint.bin";
+
+/// "frame.0007.bin".
+std::string frame_name(int number);
+
+/// Whether a cache calls one of its files so.
+bool is_cache_file(const std::string& name);
+
+/// Removes temporary files that a killed process left.
+void remove_leftovers(const std::filesystem::path& folder);
+
+/// Removes all files of a cache, the manifest first: without it the others count for nothing.
+void remove_cache_files(const std::filesystem::path& folder);
+
+}  // namespace assets

@@ -1,0 +1,55 @@
+// A block of domains in structure-of-arrays form, the unit of work of the elastic kernels.
+#pragma once
+
+#include "sim/materials/lanes.h"
+#include "sim/scene.h"
+
+#include <array>
+#include <vector>
+
+namespace sim {
+
+/// A brick is a dense box of lattice cells with its own copy of the corners, x fastest. Eight consecutive slots, slot o
+/// being the domain whose lowest corner has local index o, form a batch: their corners a lie at o + step[a], so every
+/// access is one contiguous vector and no index is stored. Slots without a domain, row ends among them, have zero
+/// volume and moduli and take part as undeformed.
+struct Brick {
+    int n_local = 0;             // local corners, padded so that every batch stays inside
+    int first_local = 0;         // of this brick in the elasticity's pool of local corners
+    std::array<int, 8> step{};   // local index offset of corner a
+    std::vector<int> batch;      // first slot of each batch that holds a domain
+    std::vector<int> domain;     // (8 #batches) domain of each slot, -1 where none
+    std::vector<unsigned> laws;  // (#batches) bit m set where a slot has model m
+
+    std::vector<Lanes> volume;                     // (#batches) filled volume V [m³]
+    std::vector<Lanes> mu, lambda;                 // (#batches) [Pa]
+    std::vector<Lanes> law;                        // (#batches) sim::Model as a number
+    std::vector<Lanes> stiffness;                  // (45 #batches) V ∂P/∂F, upper triangle [J]
+    std::vector<Lanes> hourglass;                  // (#batches) stiffness of the bilinear hourglass modes [N/m]
+};
+
+/// What a pass over a brick reads and writes: structure of arrays, n_local entries per component.
+struct BrickFields {
+    const double* in[3];  // corner positions x or displacements u [m]
+    double* out[3];       // added to: gradient [N], product K u [N], or the diagonal of K [N/m]
+};
+
+/// ∂E/∂x is added to `out`; returns the energy E = Σ V Ψ(F) + E_hg [J], +infinity where a law forbids the state.
+double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fields);
+
+/// V ∂P/∂F of every domain at corners `in`, exact (may be indefinite).
+void linearize_brick(Brick& brick, double edge, const BrickFields& fields);
+
+/// Replaces V ∂P/∂F by its positive semi-definite projection, domain by domain, where it is indefinite.
+void project_brick(Brick& brick, double edge, const BrickFields& fields);
+
+/// K u is added to `out`.
+void add_brick_product(const Brick& brick, double edge, const BrickFields& fields);
+
+/// The diagonal of K, up to terms that cancel between equal neighbours, is added to `out`.
+void add_brick_diagonal(const Brick& brick, double edge, const BrickFields& fields);
+
+/// J = det F of each slot of a batch at corners `in`; 1 for empty slots.
+Lanes brick_J(const Brick& brick, int batch, double edge, const BrickFields& fields);
+
+}  // namespace sim

@@ -1,0 +1,63 @@
+// The elastic energy of one body on its lattice: one point per domain, and a rotation-invariant hourglass energy.
+#pragma once
+
+#include "sim/base/field.h"
+#include "sim/elasticity/brick.h"
+#include "sim/lattice/lattice.h"
+
+#include <array>
+#include <vector>
+
+namespace sim {
+
+/// E(x) = Σ_p V_p Ψ_p(F_p) + E_hg, with F_p = Σ_a x_a b_aᵀ at the centre of domain p (b_a = (±1, ±1, ±1)/(4s)), and
+///
+///   E_hg = Σ_p eps mu_p V_p/8 Σ_g |F_g - F_p|²   over the eight Gauss points g,
+///
+/// which vanishes on affine motion and is quadratic in x. In the modes h_m of a domain it is diagonal:
+/// eps mu V / (24 s²) (Σ bilinear h_m² + 1/2 trilinear h_m²). [materials.md §6]
+/// eps = (1+nu)/2 gives a domain bent along a lattice axis its exact stiffness E I, as incompatible modes would: the
+/// mode u_x = ξζ stores eps mu 2/3, the beam E/6.
+///
+/// All fields are indexed by the body's corners. Not safe to call from several threads at once (shared scratch); it runs
+/// in parallel itself, with the same result for any number of threads.
+class Elasticity {
+  public:
+    Elasticity(const Lattice& lattice, const Body& body);
+
+    /// Sets `gradient` (#C) to ∂E/∂x [N] and returns E [J]; +infinity where a law forbids the state (J <= 0).
+    double energy_and_gradient(const Vec3p* x, Vec3p* gradient);
+
+    /// Keeps K = ∂²E/∂x² at x for product() and diagonal(); `project`: made positive semi-definite.
+    void linearize(const Vec3p* x, bool project);
+
+    /// product = K u.   [N]
+    void product(const Vec3p* u, Vec3p* product);
+
+    /// A positive estimate of K's diagonal.   [N/m]
+    void diagonal(Vec3p* diagonal);
+
+    struct SmallestJ {
+        double J = 0;
+        int domain = -1;
+    };
+
+    SmallestJ smallest_J(const Vec3p* x);
+
+  private:
+    void fill_brick(const Lattice& lattice, const Body& body, const std::array<int, 3>& low,
+                    const std::array<int, 3>& size, const std::vector<int>& domains);
+    void load(const Vec3p* values);
+    void sum_to_corners(Vec3p* values) const;
+    template <class Kernel>
+    void for_bricks(const Kernel& kernel);
+    BrickFields fields(const Brick& brick);
+
+    double edge_ = 0;
+    std::vector<Brick> bricks_;
+    std::vector<int> corner_of_local_;                // (#pool) -1 where the lattice has no corner
+    std::vector<int> sources_start_, sources_;        // corner -> its local corners, in order
+    std::array<std::vector<double>, 3> in_, out_;     // (#pool) per component
+};
+
+}  // namespace sim

@@ -1,0 +1,154 @@
+// What happens in a shot, as plain data: the simulation's input. Only shots/ parses text into it.
+#pragma once
+
+#include "assets/base/vector_types.h"
+#include "assets/generators/shape.h"
+
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace sim {
+
+enum class Method { Domains, Enriched, Fem };
+enum class Steps { SemiImplicit, Implicit, Static };
+enum class Model { NeoHookean, StableNeoHookean, FixedCorotated };
+
+/// A part of a body at rest. Geometric selectors are boolean functions of the rest position; MeshMaterial and
+/// Depth depend on the body's own surface.
+struct Selector {
+    struct All {};
+
+    struct HalfSpace {  // the side opposite to the normal: (x - point)·normal <= 0
+        Vec3 point{0, 0, 0}, normal{0, 0, 1};
+    };
+
+    struct MeshMaterial {
+        std::string pattern;  // shell-style: "*" and "?"
+    };
+
+    struct Inside {  // of a closed mesh
+        std::filesystem::path mesh;
+    };
+
+    struct Depth {
+        double depth = 0;  // within this distance under the surface [m]
+    };
+
+    struct AllOf {
+        std::vector<Selector> of;
+    };
+
+    struct AnyOf {
+        std::vector<Selector> of;
+    };
+
+    struct Not {
+        std::vector<Selector> of;  // exactly one
+    };
+
+    std::variant<All, assets::Box, assets::Sphere, HalfSpace, MeshMaterial, Inside, Depth, AllOf, AnyOf, Not> is;
+    std::string key;  // the shot file's path of this selector, for error messages
+};
+
+struct Region {
+    std::string name;
+    Selector select;
+    Model model = Model::NeoHookean;
+    double young_modulus = 0;   // [Pa], > 0
+    double poisson_ratio = 0;   // -1 < nu < 1/2
+    double density = 0;         // [kg/m³], > 0
+    Vec3f color{0.8f, 0.8f, 0.8f};  // sRGB as typed in the shot file, 0..1
+};
+
+/// A fine surface that the body carries.
+struct Skin {
+    std::string name;
+    std::optional<assets::Source> source;  // empty: the body's own surface
+};
+
+struct Body {
+    std::string name;
+    assets::Source source;
+    double domain_size = 0;   // edge s of a domain [m]
+    Vec3 velocity{0, 0, 0};   // initial [m/s]
+    Vec3 spin{0, 0, 0};       // initial angular velocity about the centre of mass [rad/s]
+    std::vector<Region> regions;  // layers: later wins; the first selects all
+    std::vector<Skin> skins;      // at least one
+};
+
+/// Prescribed motion of the corners of the selected part.
+struct Pin {
+    struct Fixed {};
+
+    struct Velocity {
+        Vec3 velocity{0, 0, 0};  // [m/s]
+    };
+
+    struct Spin {
+        Vec3 axis{0, 0, 1}, point{0, 0, 0};
+        double rate = 0;  // [rad/s], right-handed about axis
+    };
+
+    std::string name, body;
+    Selector select;
+    std::variant<Fixed, Velocity, Spin> moves;
+    double until = std::numeric_limits<double>::infinity();  // released then [s]
+    std::array<bool, 3> only{true, true, true};              // the axes constrained
+};
+
+struct Gravity {
+    Vec3 acceleration{0, 0, 0};  // [m/s²]
+};
+
+struct DeadLoad {
+    std::string body;
+    Selector select;
+    Vec3 total{0, 0, 0};  // [N], spread over the selected corners by their volume share
+};
+
+using Force = std::variant<Gravity, DeadLoad>;
+
+/// Coulomb friction; `Stick` never slides, a coefficient of 0 slips.
+struct Friction {
+    bool stick = false;
+    double coefficient = 0;
+};
+
+struct PlaneShape {
+    Vec3 point{0, 0, 0}, normal{0, 0, 1};  // solid on the side opposite to the normal
+};
+
+struct Collider {
+    std::variant<PlaneShape, assets::Sphere, assets::Box> shape;
+    Friction friction;
+};
+
+struct Probe {
+    std::string name, body;
+    std::variant<Vec3, std::string> at;  // a material point at rest [m], or a region's name
+};
+
+struct SolverOptions {
+    Method method = Method::Enriched;
+    Steps steps = Steps::Implicit;
+    std::optional<double> dt;  // largest step [s]; empty: a tenth of a frame
+    double grid_ratio = 2;     // background cell / domain edge, >= 1
+    double damping = 0;        // mass-proportional [1/s]
+};
+
+struct Scene {
+    SolverOptions solver;
+    std::vector<Body> bodies;
+    std::vector<Pin> pins;
+    std::vector<Force> forces;
+    std::vector<Collider> colliders;
+    Friction contact;  // between bodies
+    std::vector<Probe> probes;
+};
+
+}  // namespace sim

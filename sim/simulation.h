@@ -1,0 +1,73 @@
+// The method on one page: bodies, one solver, steps in time.
+#pragma once
+
+#include "assets/frames/frame_cache.h"
+#include "sim/lattice/lattice.h"
+#include "sim/scene.h"
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sim {
+
+/// One row of stats.csv. Energies in J, momenta in kg m/s and kg m²/s about the origin.
+struct Stats {
+    int steps = 0, newton_iterations = 0, cg_iterations = 0;  // since the frame before
+    double kinetic_energy = 0, elastic_energy = 0, gravitational_energy = 0;
+    Vec3 linear_momentum{0, 0, 0}, angular_momentum{0, 0, 0};
+    double total_mass = 0;  // on the degrees of freedom [kg]
+    double smallest_J = 0;  // over all domains, now
+};
+
+/// One row of probes.csv: a material point, or a region's centre with its mean stretch and volume.
+struct ProbeRow {
+    std::string name;
+    Vec3 position{0, 0, 0};     // [m]
+    bool is_region = false;
+    double stretch = 0;         // volume-weighted mean of the largest principal stretch
+    double volume = 0;          // [m³]
+};
+
+/// One row of pins.csv: what holds the body, i.e. force and moment of the pin on the body.
+struct PinRow {
+    std::string name;
+    Vec3 force{0, 0, 0};   // [N]
+    Vec3 moment{0, 0, 0};  // about the pin's point or the centre of its corners now [N m]
+};
+
+class Simulation {
+  public:
+    /// Voxelises, binds and checks everything. Throws Error(Input) with the key at fault.
+    /// `frame_time` = 1/fps sets the step where solver.dt is empty.   [s]
+    Simulation(Scene scene, double frame_time);
+    ~Simulation();
+
+    /// Steps until `time` in equal steps no longer than dt; `Steps::Static`: equilibrium of the loads then.
+    /// Throws Error(Diverged) naming place, body, region and likely cause.
+    void advance_to(double time);
+
+    double time() const;
+    const Scene& scene() const;
+    const Lattice& lattice(int body) const;
+    const std::vector<std::string>& notes() const;  // repairs and simplifications to be told to the user
+
+    Stats stats() const;
+    std::vector<ProbeRow> probes() const;
+    std::vector<PinRow> pins() const;
+
+    /// Surfaces of all skins of all bodies, in order: topology, and their state now.
+    std::vector<assets::CachedSurface> surfaces() const;
+    std::vector<assets::SurfaceFrame> deformed_surfaces() const;
+
+    /// Everything that later frames depend on, in double; restore() continues bit-identically.
+    std::vector<std::byte> checkpoint() const;
+    void restore(const std::vector<std::byte>& state);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sim
