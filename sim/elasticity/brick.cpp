@@ -76,9 +76,8 @@ ALWAYS_INLINE Matrix3<Lanes> gradient_of_modes(const Lanes h[3][8], double edge)
 }
 
 ALWAYS_INLINE void set_identity_where_empty(const Lanes& volume, Matrix3<Lanes>& F) {
-    const Lanes zero{}, one = zero + 1.0;
     for (int k = 0; k < 9; ++k)
-        F.m[k] = volume > zero ? F.m[k] : (k % 4 == 0 ? one : zero);
+        F.m[k] = select_positive(volume, F.m[k], uniform<Lanes>(k % 4 == 0 ? 1 : 0));
 }
 
 /// ∂E_hg/∂h_m = k h_m for bilinear modes, k/2 h_m for the trilinear one; returns E_hg.
@@ -95,6 +94,12 @@ ALWAYS_INLINE Lanes hourglass(const Lanes& k, const Lanes h[3][8], Lanes g[3][8]
     return 0.5 * energy;
 }
 
+/// Positive in the slots of a law.
+ALWAYS_INLINE Lanes where_law(const Lanes& law, Model model) {
+    const Lanes difference = law - static_cast<double>(model);
+    return 0.5 - difference * difference;
+}
+
 template <class Law>
 ALWAYS_INLINE void take_law(const Brick& brick, int b, Model model, const Matrix3<Lanes>& F, Lanes& psi,
                             Matrix3<Lanes>& P) {
@@ -108,10 +113,10 @@ ALWAYS_INLINE void take_law(const Brick& brick, int b, Model model, const Matrix
         P = P_law;
         return;
     }
-    const Lanes number = Lanes{} + static_cast<double>(model);
-    psi = brick.law[b] == number ? psi_law : psi;
+    const Lanes is_law = where_law(brick.law[b], model);
+    psi = select_positive(is_law, psi_law, psi);
     for (int k = 0; k < 9; ++k)
-        P.m[k] = brick.law[b] == number ? P_law.m[k] : P.m[k];
+        P.m[k] = select_positive(is_law, P_law.m[k], P.m[k]);
 }
 
 template <class Law>
@@ -119,11 +124,11 @@ ALWAYS_INLINE void take_stiffness(const Brick& brick, int b, Model model, const 
     const unsigned bit = 1u << static_cast<int>(model);
     if (!(brick.laws[b] & bit))
         return;
-    Lanes A_law[45];
+    alignas(64) Lanes A_law[45];
     Law::stiffness(F, brick.mu[b], brick.lambda[b], A_law);
-    const Lanes number = Lanes{} + static_cast<double>(model);
+    const Lanes is_law = where_law(brick.law[b], model);
     for (int k = 0; k < 45; ++k)
-        A[k] = brick.law[b] == number ? brick.volume[b] * A_law[k] : A[k];
+        A[k] = select_positive(is_law, brick.volume[b] * A_law[k], A[k]);
 }
 
 }  // namespace
@@ -133,7 +138,7 @@ double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fi
     Lanes energy{};
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
         const int slot = brick.batch[b];
-        Lanes h[3][8], g[3][8];
+        alignas(64) Lanes h[3][8], g[3][8];
         for (int i = 0; i < 3; ++i)
             load_modes(brick, fields.in[i], slot, h[i]);
         Matrix3<Lanes> F = gradient_of_modes(h, edge), P{};
@@ -162,7 +167,7 @@ double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fi
 SUPPLE_LANES
 void linearize_brick(Brick& brick, double edge, const BrickFields& fields) {
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
-        Lanes h[3][8];
+        alignas(64) Lanes h[3][8];
         for (int i = 0; i < 3; ++i)
             load_modes(brick, fields.in[i], brick.batch[b], h[i]);
         Matrix3<Lanes> F = gradient_of_modes(h, edge);
@@ -179,10 +184,10 @@ void add_brick_product(const Brick& brick, double edge, const BrickFields& field
     const double scale = 1 / (16 * edge * edge);  // 1/(4s) from the modes to F and back
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
         const int slot = brick.batch[b];
-        Lanes h[3][8], g[3][8];
+        alignas(64) Lanes h[3][8], g[3][8];
         for (int i = 0; i < 3; ++i)
             load_modes(brick, fields.in[i], slot, h[i]);
-        Lanes dF[9], dP[9] = {};
+        alignas(64) Lanes dF[9], dP[9] = {};
         for (int r = 0; r < 9; ++r)
             dF[r] = scale * h[r % 3][linear_mode[r / 3]];
         const Lanes* A = &brick.stiffness[45 * b];
@@ -222,7 +227,7 @@ void add_brick_diagonal(const Brick& brick, double edge, const BrickFields& fiel
 }
 
 Lanes brick_J(const Brick& brick, int b, double edge, const BrickFields& fields) {
-    Lanes h[3][8];
+    alignas(64) Lanes h[3][8];
     for (int i = 0; i < 3; ++i)
         load_modes(brick, fields.in[i], brick.batch[b], h[i]);
     Matrix3<Lanes> F = gradient_of_modes(h, edge);

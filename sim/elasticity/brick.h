@@ -1,7 +1,7 @@
 // A block of domains in structure-of-arrays form, the unit of work of the elastic kernels.
 #pragma once
 
-#include "sim/materials/lanes.h"
+#include "sim/materials/lane_vector.h"
 #include "sim/scene.h"
 
 #include <array>
@@ -21,11 +21,11 @@ struct Brick {
     std::vector<int> domain;     // (8 #batches) domain of each slot, -1 where none
     std::vector<unsigned> laws;  // (#batches) bit m set where a slot has model m
 
-    std::vector<Lanes> volume;                     // (#batches) filled volume V [m³]
-    std::vector<Lanes> mu, lambda;                 // (#batches) [Pa]
-    std::vector<Lanes> law;                        // (#batches) sim::Model as a number
-    std::vector<Lanes> stiffness;                  // (45 #batches) V ∂P/∂F, upper triangle [J]
-    std::vector<Lanes> hourglass;                  // (#batches) stiffness of the bilinear hourglass modes [N/m]
+    LaneVector volume;                     // (#batches) filled volume V [m³]
+    LaneVector mu, lambda;                 // (#batches) [Pa]
+    LaneVector law;                        // (#batches) sim::Model as a number
+    LaneVector stiffness;                  // (45 #batches) V ∂P/∂F, upper triangle [J]
+    LaneVector hourglass;                  // (#batches) stiffness of the bilinear hourglass modes [N/m]
 };
 
 /// What a pass over a brick reads and writes: structure of arrays, n_local entries per component.

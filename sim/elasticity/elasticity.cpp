@@ -105,7 +105,7 @@ void Elasticity::fill_brick(const Lattice& lattice,
         const auto first = domain_of_slot.begin() + slot;
         if (std::all_of(first, first + lane_count, [](int p) { return p < 0; }))
             continue;
-        Lanes volume = zero, mu = zero, lambda = zero, law = zero - 1.0, hourglass = zero;
+        alignas(64) Lanes volume = zero, mu = zero, lambda = zero, law = zero - 1.0, hourglass = zero;
         unsigned laws = 0;
         for (int l = 0; l < lane_count; ++l) {
             const int p = first[l];

@@ -1,0 +1,131 @@
+#include "sim/assembly.h"
+
+#include "assets/base/error.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace sim {
+
+namespace {
+
+constexpr double contact_stiffness = 20;  // k / (E s): depth below 1e-3 s under 2% of E as pressure
+
+/// Young's modulus of a domain's mixture.   [Pa]
+double young_modulus(const Lattice& lattice, int p) {
+    const double mu = lattice.mu[p], lambda = lattice.lambda[p];
+    return mu * (3 * lambda + 2 * mu) / (lambda + mu);
+}
+
+Vec3 centre_of_mass(const Lattice& lattice) {
+    Vec3 sum = Vec3::Zero();
+    double mass = 0;
+    for (int c = 0; c < lattice.n_corners(); ++c) {
+        sum += lattice.corner_mass[c] * lattice.corner_rest[c];
+        mass += lattice.corner_mass[c];
+    }
+    return sum / mass;
+}
+
+}  // namespace
+
+AssembledBody::AssembledBody(const Body& body, Lattice made, int first_corner, double grid_ratio)
+    : lattice(std::move(made)),
+      begin(first_corner),
+      end(first_corner + lattice.n_corners()),
+      cell_size(grid_ratio * lattice.edge),
+      elasticity(lattice, body),
+      enrichment(lattice, cell_size) {
+    for (const Skin& skin : body.skins)
+        surfaces.emplace_back(lattice, body, skin);
+}
+
+Assembly::Assembly(const Scene& scene) {
+    bodies.reserve(scene.bodies.size());
+    for (const Body& body : scene.bodies)
+        add_body(body, scene.solver.grid_ratio);
+
+    force.assign(n_corners(), Vec3p{});
+    for (const Force& item : scene.forces) {
+        if (const auto* load = std::get_if<DeadLoad>(&item))
+            add_force(scene, *load);
+        else
+            gravity += std::get<Gravity>(item).acceleration;
+    }
+    for (int c = 0; c < n_corners(); ++c)
+        force[c] += mass[c] * padded(gravity);
+
+    for (const Pin& pin : scene.pins) {
+        const int b = index_of(scene.bodies, pin.body);
+        AssembledPin assembled{select_corners(bodies[b].lattice, scene.bodies[b], pin.select)};
+        for (int& c : assembled.corners)
+            c += bodies[b].begin;
+        pins.push_back(std::move(assembled));
+    }
+    for (const Probe& probe : scene.probes) {
+        AssembledProbe assembled;
+        assembled.body = index_of(scene.bodies, probe.body);
+        if (const auto* region = std::get_if<std::string>(&probe.at))
+            assembled.region = index_of(scene.bodies[assembled.body].regions, *region);
+        else
+            assembled.point = bind_points(bodies[assembled.body].lattice, {std::get<Vec3>(probe.at)})[0];
+        probes.push_back(assembled);
+    }
+}
+
+void Assembly::add_body(const Body& body, double grid_ratio) {
+    std::vector<std::string> repairs;
+    bodies.emplace_back(body, make_lattice(body, &repairs), n_corners(), grid_ratio);
+    for (const std::string& repair : repairs)
+        notes.push_back("body \"" + body.name + "\": " + repair);
+
+    const Lattice& lattice = bodies.back().lattice;
+    const Vec3 centre = centre_of_mass(lattice);
+    for (int c = 0; c < lattice.n_corners(); ++c) {
+        const Vec3& X = lattice.corner_rest[c];
+        rest.push_back(padded(X));
+        mass.push_back(padded(Vec3::Constant(lattice.corner_mass[c])));
+        initial_velocity.push_back(padded(body.velocity + body.spin.cross(X - centre)));
+        outside.push_back(lattice.corner_outside[c]);
+    }
+}
+
+void Assembly::add_force(const Scene& scene, const DeadLoad& load) {
+    const int b = index_of(scene.bodies, load.body);
+    const Lattice& lattice = bodies[b].lattice;
+    const std::vector<int> corners = select_corners(lattice, scene.bodies[b], load.select);
+    double volume = 0;
+    for (const int c : corners)
+        volume += lattice.corner_volume[c];
+    for (const int c : corners)
+        force[bodies[b].begin + c] += padded(load.total * (lattice.corner_volume[c] / volume));
+}
+
+int Assembly::body_of(int corner) const {
+    const auto after = std::upper_bound(
+        bodies.begin(), bodies.end(), corner, [](int c, const AssembledBody& body) { return c < body.begin; });
+    return static_cast<int>(after - bodies.begin()) - 1;
+}
+
+std::vector<ContactCorner> Assembly::contact_corners() const {
+    std::vector<ContactCorner> result;
+    for (const AssembledBody& body : bodies) {
+        const Lattice& lattice = body.lattice;
+        std::vector<int> n_domains(lattice.n_corners(), 0);
+        std::vector<double> modulus(lattice.n_corners(), 0);
+        for (int p = 0; p < lattice.n_domains(); ++p)
+            for (const int c : lattice.corners[p]) {
+                ++n_domains[c];
+                modulus[c] = std::max(modulus[c], young_modulus(lattice, p));
+            }
+        for (int c = 0; c < lattice.n_corners(); ++c)
+            if (n_domains[c] < 8)
+                result.push_back({body.begin + c,
+                                  lattice.corner_outside[c],
+                                  contact_stiffness * modulus[c] * lattice.edge});
+    }
+    return result;
+}
+
+}  // namespace sim

@@ -1,0 +1,79 @@
+// All bodies of a scene side by side in one field of corners, with what acts on them.
+#pragma once
+
+#include "assets/base/error.h"
+#include "sim/base/field.h"
+#include "sim/contact/collider_contact.h"
+#include "sim/elasticity/elasticity.h"
+#include "sim/embedding/embedding.h"
+#include "sim/enrichment/interface_enrichment.h"
+#include "sim/lattice/lattice.h"
+#include "sim/scene.h"
+
+#include <string>
+#include <vector>
+
+namespace sim {
+
+/// A body cut into domains; its corners are [begin, end) of the scene's.
+struct AssembledBody {
+    Lattice lattice;
+    int begin = 0, end = 0;
+    double cell_size = 0;  // of its background grid [m]
+    Elasticity elasticity;
+    InterfaceEnrichment enrichment;
+    std::vector<EmbeddedSurface> surfaces;
+
+    AssembledBody(const Body& body, Lattice made, int first_corner, double grid_ratio);
+};
+
+/// A pin's corners in the scene's field.
+struct AssembledPin {
+    std::vector<int> corners;
+};
+
+/// A probe bound to its body.
+struct AssembledProbe {
+    int body = 0;
+    Binding point;    // of a material point
+    int region = -1;  // else the region's index
+};
+
+struct Assembly {
+    explicit Assembly(const Scene& scene);
+
+    std::vector<AssembledBody> bodies;
+    std::vector<AssembledPin> pins;
+    std::vector<AssembledProbe> probes;
+    Field rest;                    // (#C) [m]
+    Field mass;                    // (#C) in x, y and z [kg]
+    Field initial_velocity;        // (#C) [m/s]
+    Field force;                   // (#C) gravity and dead loads [N]
+    std::vector<double> outside;   // (#C) distance out of the body's surface at rest [m]
+    Vec3 gravity{0, 0, 0};         // [m/s²]
+    std::vector<std::string> notes;
+
+    int n_corners() const { return static_cast<int>(rest.size()); }
+
+    /// Index of the body that holds a corner.
+    int body_of(int corner) const;
+
+    /// Corners that may touch a collider, with their penalty stiffness.
+    std::vector<ContactCorner> contact_corners() const;
+
+  private:
+    void add_body(const Body& body, double grid_ratio);
+    void add_force(const Scene& scene, const DeadLoad& load);
+};
+
+/// Index of a name in a list of things with names; the shot file has been checked, so it is there.
+template <class Named>
+int index_of(const std::vector<Named>& list, const std::string& name) {
+    for (std::size_t k = 0; k < list.size(); ++k)
+        if (list[k].name == name)
+            return static_cast<int>(k);
+    assets::check(false, ("no such name: " + name).c_str());
+    return -1;
+}
+
+}  // namespace sim

@@ -1,0 +1,81 @@
+#include "sim/diagnosis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sim {
+
+namespace {
+
+struct Worst {
+    int body = 0, domain = 0;
+    double J = 0;
+    Vec3 place{0, 0, 0};
+};
+
+/// The most compressed domain of all bodies.
+Worst most_compressed(Assembly& assembly, const Field& x) {
+    Worst worst;
+    worst.J = std::numeric_limits<double>::infinity();
+    for (std::size_t b = 0; b < assembly.bodies.size(); ++b) {
+        AssembledBody& body = assembly.bodies[b];
+        const auto found = body.elasticity.smallest_J(&x[body.begin]);
+        if (found.domain < 0 || !(found.J < worst.J))
+            continue;
+        Vec3 place = Vec3::Zero();
+        for (const int c : body.lattice.corners[found.domain])
+            place += unpadded(x[body.begin + c]) / 8;
+        worst = {static_cast<int>(b), found.domain, found.J, place};
+    }
+    return worst;
+}
+
+std::string cause(const Scene& scene, const NewtonSummary& summary, double dt, double J) {
+    if (dt == 0 && scene.pins.empty())
+        return "nothing holds the body, so there is no equilibrium; pin it, or use steps = \"implicit\"";
+    if (scene.solver.steps == Steps::SemiImplicit)
+        return fmt::format("one linearised solve is not enough for such a motion in a step of {:g} s; "
+                           "try --set solver.steps=implicit, or a smaller solver.dt",
+                           dt);
+    if (summary.termination == Termination::NotFinite || J <= 0)
+        return dt > 0 ? fmt::format("pins or speeds squash domains flat within one step; try --set solver.dt={:g}",
+                                    dt / 4)
+                      : std::string("the pins move too far between two frames; use more frames, or move them less");
+    return dt > 0 ? fmt::format("the step is too long for the motion; try --set solver.dt={:g}", dt / 4)
+                  : std::string("the load is more than the body can carry in equilibrium, or it buckles; "
+                                "try a smaller load, or steps = \"implicit\" with damping");
+}
+
+}  // namespace
+
+assets::Error diagnose(const Scene& scene,
+                       Assembly& assembly,
+                       const State& state,
+                       const Field& trial,
+                       double dt,
+                       const NewtonSummary& summary) {
+    const Worst worst = most_compressed(assembly, trial.size() == state.x.size() ? trial : state.x);
+    const Body& body = scene.bodies[worst.body];
+    const Region& region = body.regions[assembly.bodies[worst.body].lattice.region[worst.domain]];
+    return {assets::ErrorKind::Diverged,
+            fmt::format("no solution {} {:.6g} s: {} (residual {:.2g} after {} Newton and {} CG iterations).\n"
+                        "  worst domain: body \"{}\", region \"{}\", at ({:.4g}, {:.4g}, {:.4g}), J = {:.3g}\n"
+                        "  likely cause: {}",
+                        dt > 0 ? "for the step after" : "for the equilibrium after",
+                        state.time,
+                        to_string(summary.termination),
+                        summary.residual,
+                        summary.iterations,
+                        summary.linear_iterations,
+                        body.name,
+                        region.name,
+                        worst.place.x(),
+                        worst.place.y(),
+                        worst.place.z(),
+                        worst.J,
+                        cause(scene, summary, dt, worst.J))};
+}
+
+}  // namespace sim

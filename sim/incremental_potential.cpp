@@ -1,0 +1,122 @@
+#include "sim/incremental_potential.h"
+
+#include "sim/base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sim {
+
+namespace {
+
+constexpr int chunk = 8192;
+constexpr double rounding = 1e-15;  // a few units in the last place
+
+}  // namespace
+
+void IncrementalPotential::update_positions(const Field& q) {
+    x_.resize(step_.x_n.size());
+    map_.apply(q, x_);
+    for_chunks(static_cast<int>(x_.size()), chunk, [&](int begin, int end) {
+        for (int c = begin; c < end; ++c)
+            x_[c] = step_.x_n[c] + step_.dt * x_[c];
+    });
+}
+
+double IncrementalPotential::value_and_gradient(const Field& q, Field& gradient) {
+    update_positions(q);
+    corner_gradient_.resize(x_.size());
+    double value = 0;
+    for (const ElasticBody& body : bodies_)
+        value += body.elasticity->energy_and_gradient(&x_[body.begin], &corner_gradient_[body.begin]);
+    value += colliders_.add_gradient(x_, corner_gradient_);
+    if (!std::isfinite(value))
+        return value;
+
+    if (!step_.static_force.empty())
+        for (std::size_t c = 0; c < x_.size(); ++c) {
+            value -= dot(step_.static_force[c], x_[c]);
+            corner_gradient_[c] -= step_.static_force[c];
+        }
+
+    // dt Tᵀ ∂Φ/∂x + M (q - q~)
+    const int n = static_cast<int>(q.size());
+    inner_part_.resize(n);
+    gradient.resize(n);
+    map_.apply_transposed(corner_gradient_, inner_part_);
+    value += sum_chunks(n, chunk, [&](int begin, int end) {
+        Vec3p sum{};
+        for (int i = begin; i < end; ++i) {
+            const Vec3p change = q[i] - step_.q_tilde[i];
+            const Vec3p impulse = step_.mass[i] * change;
+            inner_part_[i] *= step_.dt;
+            gradient[i] = (impulse + inner_part_[i]) * step_.is_free[i];
+            sum += impulse * change;
+        }
+        return 0.5 * (sum[0] + sum[1] + sum[2]);
+    });
+    return value;
+}
+
+void IncrementalPotential::linearize(const Field& q, bool project) {
+    update_positions(q);
+    const int n = static_cast<int>(q.size());
+    corner_diagonal_.resize(x_.size());
+    corner_product_.resize(x_.size());
+    double largest_coordinate = 0;
+    for (const ElasticBody& body : bodies_) {
+        body.elasticity->linearize(&x_[body.begin], project);
+        body.elasticity->diagonal(&corner_diagonal_[body.begin]);
+    }
+    for (const Vec3p& x : x_)
+        for (int k = 0; k < 3; ++k)
+            largest_coordinate = std::max(largest_coordinate, std::abs(x[k]));
+    colliders_.linearize(x_);
+    colliders_.add_diagonal(corner_diagonal_);
+
+    // The diagonal of M + dt² Tᵀ K T, and what rounding of positions does to dt Tᵀ ∂Φ/∂x.
+    inverse_diagonal_.resize(n);
+    map_.apply_squared_transposed(corner_diagonal_, inverse_diagonal_);
+    const double dt_squared = step_.dt * step_.dt;
+    const double noise_squared = sum_chunks(n, chunk, [&](int begin, int end) {
+        double sum = 0;
+        for (int i = begin; i < end; ++i) {
+            const Vec3p stiffness = inverse_diagonal_[i];
+            const Vec3p diagonal = step_.mass[i] + dt_squared * stiffness;
+            Vec3p inverse{};
+            for (int k = 0; k < 3; ++k)
+                inverse[k] = step_.is_free[i][k] > 0 && diagonal[k] > 0 ? 1 / diagonal[k] : 0;
+            inverse_diagonal_[i] = inverse;
+            sum += dot(stiffness * stiffness, inverse);
+        }
+        return sum;
+    });
+    noise_ = rounding * largest_coordinate * step_.dt * std::sqrt(noise_squared);
+}
+
+void IncrementalPotential::hessian_product(const Field& p, Field& product) {
+    corner_diagonal_.resize(x_.size());
+    Field& u = corner_diagonal_;
+    map_.apply(p, u);
+    for (const ElasticBody& body : bodies_)
+        body.elasticity->product(&u[body.begin], &corner_product_[body.begin]);
+    colliders_.add_product(u, corner_product_);
+    map_.apply_transposed(corner_product_, product);
+    const double dt_squared = step_.dt * step_.dt;
+    for_chunks(static_cast<int>(p.size()), chunk, [&](int begin, int end) {
+        for (int i = begin; i < end; ++i)
+            product[i] = step_.mass[i] * p[i] + dt_squared * product[i];
+    });
+}
+
+double IncrementalPotential::gradient_scale() const {
+    const double inner = scaled_norm(inner_part_, inverse_diagonal_);
+    if (step_.static_force.empty())
+        return inner;
+    // In statics the inner part itself vanishes in equilibrium: measure it against the load.
+    Field load(inner_part_.size());
+    map_.apply_transposed(step_.static_force, load);
+    return std::max(inner, scaled_norm(load, inverse_diagonal_));
+}
+
+}  // namespace sim

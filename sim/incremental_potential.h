@@ -1,0 +1,67 @@
+// The incremental potential of one step: what a step of every method minimises.
+#pragma once
+
+#include "sim/contact/collider_contact.h"
+#include "sim/elasticity/elasticity.h"
+#include "sim/grid/corner_map.h"
+#include "sim/solver/potential.h"
+
+#include <vector>
+
+namespace sim {
+
+/// Backward Euler in the degrees of freedom q (velocities),
+///
+///   W(q) = 1/2 (q - q~)ᵀ M (q - q~) + Φ(x_n + dt T q),      A = M + dt² Tᵀ K T
+///
+/// with Φ = elastic + hourglass + collider energies, M lumped on q, and q~ the velocity after transfer, external forces
+/// and damping. Statics is the same with M = 0, dt = 1 (q is then a displacement) and the external forces in Φ:
+/// W(u) = Φ(x_n + T u) - f·(x_n + T u).   [design.md §1]
+class IncrementalPotential : public Potential {
+  public:
+    /// The bodies' energies and their ranges in the field of all corners.
+    struct ElasticBody {
+        Elasticity* elasticity = nullptr;
+        int begin = 0, end = 0;
+    };
+
+    IncrementalPotential(const CornerMap& map, std::vector<ElasticBody> bodies, ColliderContact& colliders)
+        : map_(map), bodies_(std::move(bodies)), colliders_(colliders) {}
+
+    /// What a step starts from. `mass`, `q_tilde` and `is_held` are indexed by q; `x_n` and `static_force` by corner
+    /// (the latter empty in dynamics). is_free holds 1 in free components and 0 in prescribed ones.
+    struct Step {
+        double dt = 0;
+        Field x_n, mass, q_tilde, is_free, static_force;
+    };
+
+    Step& step() { return step_; }
+
+    double value_and_gradient(const Field& q, Field& gradient) override;
+    void linearize(const Field& q, bool project) override;
+    void hessian_product(const Field& p, Field& product) override;
+
+    const Field& inverse_diagonal() const override { return inverse_diagonal_; }
+
+    double gradient_scale() const override;
+
+    double gradient_noise() const override { return noise_; }
+
+    /// Corner positions of the last q evaluated.
+    const Field& positions() const { return x_; }
+
+    /// ∂Φ/∂x (#C) at the last q evaluated [N].
+    const Field& corner_gradient() const { return corner_gradient_; }
+
+  private:
+    void update_positions(const Field& q);
+
+    const CornerMap& map_;
+    std::vector<ElasticBody> bodies_;
+    ColliderContact& colliders_;
+    Step step_;
+    Field x_, corner_gradient_, corner_product_, corner_diagonal_, inner_part_, inverse_diagonal_;
+    double noise_ = 0;
+};
+
+}  // namespace sim

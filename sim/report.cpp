@@ -1,0 +1,112 @@
+#include "sim/report.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+
+#include <algorithm>
+
+namespace sim {
+
+namespace {
+
+ProbeRow region_row(const AssembledBody& body, int region, const std::vector<Vec3>& corners) {
+    ProbeRow row;
+    row.is_region = true;
+    double rest_volume = 0;
+    for (int p = 0; p < body.lattice.n_domains(); ++p) {
+        if (body.lattice.region[p] != region)
+            continue;
+        const Mat3 F = deformation_gradient(body.lattice, p, corners);
+        const double volume = body.lattice.domain_volume(p), deformed = volume * F.determinant();
+        Vec3 centre = Vec3::Zero();
+        for (const int c : body.lattice.corners[p])
+            centre += corners[c] / 8;
+        row.position += deformed * centre;
+        row.stretch += volume * Eigen::JacobiSVD<Mat3>(F).singularValues()[0];
+        row.volume += deformed;
+        rest_volume += volume;
+    }
+    if (rest_volume > 0) {  // a region may be thinner than a domain everywhere
+        row.position /= row.volume;
+        row.stretch /= rest_volume;
+    }
+    return row;
+}
+
+/// The point about which the moment of a pin is taken.
+Vec3 moment_point(const Pin& pin, const AssembledPin& assembled, const Field& x) {
+    if (const auto* spin = std::get_if<Pin::Spin>(&pin.moves))
+        return spin->point;
+    Vec3 sum = Vec3::Zero();
+    for (const int c : assembled.corners)
+        sum += unpadded(x[c]);
+    return sum / static_cast<double>(assembled.corners.size());
+}
+
+}  // namespace
+
+std::vector<Vec3> corners_of(const AssembledBody& body, const Field& x) {
+    std::vector<Vec3> corners(body.end - body.begin);
+    for (std::size_t c = 0; c < corners.size(); ++c)
+        corners[c] = unpadded(x[body.begin + c]);
+    return corners;
+}
+
+Stats stats_of(Assembly& assembly, const Stepper& stepper, const State& state) {
+    Stats stats;
+    stats.steps = stepper.steps;
+    stats.newton_iterations = stepper.newton_iterations;
+    stats.cg_iterations = stepper.cg_iterations;
+    stats.total_mass = stepper.mass_on_dofs();
+    for (std::size_t c = 0; c < state.x.size(); ++c) {
+        const Vec3 x = unpadded(state.x[c]), momentum = assembly.mass[c][0] * unpadded(state.v[c]);
+        stats.kinetic_energy += 0.5 * momentum.dot(unpadded(state.v[c]));
+        stats.gravitational_energy -= assembly.mass[c][0] * assembly.gravity.dot(x);
+        stats.linear_momentum += momentum;
+        stats.angular_momentum += x.cross(momentum);
+    }
+    Field gradient(state.x.size());
+    stats.smallest_J = std::numeric_limits<double>::infinity();
+    for (AssembledBody& body : assembly.bodies) {
+        stats.elastic_energy += body.elasticity.energy_and_gradient(&state.x[body.begin], &gradient[body.begin]);
+        stats.smallest_J = std::min(stats.smallest_J, body.elasticity.smallest_J(&state.x[body.begin]).J);
+    }
+    return stats;
+}
+
+std::vector<ProbeRow> probes_of(const Scene& scene, const Assembly& assembly, const State& state) {
+    std::vector<ProbeRow> rows;
+    for (std::size_t k = 0; k < scene.probes.size(); ++k) {
+        const AssembledProbe& probe = assembly.probes[k];
+        const AssembledBody& body = assembly.bodies[probe.body];
+        const std::vector<Vec3> corners = corners_of(body, state.x);
+        ProbeRow row;
+        if (probe.region >= 0)
+            row = region_row(body, probe.region, corners);
+        else
+            row.position = carried(body.lattice, probe.point, corners);
+        row.name = scene.probes[k].name;
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+std::vector<PinRow> pins_of(const Scene& scene, const Assembly& assembly, const Stepper& stepper, const State& state) {
+    std::vector<PinRow> rows;
+    for (std::size_t k = 0; k < scene.pins.size(); ++k) {
+        PinRow row;
+        row.name = scene.pins[k].name;
+        const Vec3 about = moment_point(scene.pins[k], assembly.pins[k], state.x);
+        for (const int c : assembly.pins[k].corners) {
+            if (stepper.prescribed().holder[c] != static_cast<int>(k))
+                continue;
+            const Vec3 force = unpadded(stepper.reaction()[c]);
+            row.force += force;
+            row.moment += (unpadded(state.x[c]) - about).cross(force);
+        }
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+}  // namespace sim

@@ -1,0 +1,147 @@
+#include "sim/solver/newton.h"
+
+#include "sim/base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sim {
+
+namespace {
+
+constexpr int chunk = 8192;
+constexpr double armijo = 1e-4;        // share of the predicted decrease that a step must bring
+constexpr double value_noise = 1e-13;  // relative rounding of W: no decrease below it can be seen
+constexpr int max_halvings = 30;
+
+double slope(const Field& gradient, const Field& step) {
+    return sum_chunks(static_cast<int>(gradient.size()), chunk, [&](int begin, int end) {
+        double sum = 0;
+        for (int i = begin; i < end; ++i)
+            sum += dot(gradient[i], step[i]);
+        return sum;
+    });
+}
+
+/// How accurate a linear solve is worth being (Eisenstat and Walker's idea, bounded by the goal).
+double forcing(const NewtonOptions& options, int iteration, double residual, double residual_before) {
+    const double goal = 0.3 * options.tolerance / residual;
+    if (iteration == 0)
+        return std::clamp(options.first_forcing, goal, 0.3);
+    const double ratio = residual / residual_before;
+    return std::max(goal, std::min(0.1, ratio * ratio));
+}
+
+/// Backtracks from the full step until W decreases enough. Returns the step length, 0 where none does.
+double search_line(Potential& potential, const Field& q, double value, NewtonScratch& s, double& trial_value) {
+    const int n = static_cast<int>(q.size());
+    const double descent = slope(s.gradient, s.step);
+    s.trial.resize(n);
+    double length = 1;
+    for (int k = 0; k < max_halvings; ++k, length /= 2) {
+        for_chunks(n, chunk, [&](int begin, int end) {
+            for (int i = begin; i < end; ++i)
+                s.trial[i] = q[i] + length * s.step[i];
+        });
+        trial_value = potential.value_and_gradient(s.trial, s.trial_gradient);
+        if (trial_value <= value + armijo * length * descent + value_noise * std::abs(value))
+            return length;
+    }
+    return 0;
+}
+
+}  // namespace
+
+std::string to_string(Termination termination) {
+    switch (termination) {
+        case Termination::Converged:
+            return "converged";
+        case Termination::IterationLimit:
+            return "Newton's method did not converge within its iterations";
+        case Termination::LineSearchFailed:
+            return "no step along Newton's direction lowers the energy";
+        case Termination::LinearSolveFailed:
+            return "conjugate gradients did not converge within their iterations";
+        case Termination::NotFinite:
+            return "the energy is not finite (a domain is inverted)";
+    }
+    return {};
+}
+
+NewtonSummary minimize(Potential& potential, const NewtonOptions& options, Field& q, NewtonScratch& s) {
+    NewtonSummary summary;
+    const int n = static_cast<int>(q.size());
+    s.gradient.resize(n);
+    s.trial_gradient.resize(n);
+    double value = potential.value_and_gradient(q, s.gradient);
+    if (!std::isfinite(value))
+        return summary;
+
+    // Norms are taken with the last linearisation: the first one is needed before anything can be judged.
+    bool project = false, linearized = true;
+    potential.linearize(q, project);
+    const double scale = potential.gradient_scale();
+    const double goal = std::max(options.tolerance * scale, potential.gradient_noise());
+    double residual_before = 0;
+    for (;; ++summary.iterations) {
+        // The gradient is small enough?
+        const double norm = scaled_norm(s.gradient, potential.inverse_diagonal());
+        summary.residual = scale > 0 ? norm / scale : 0;
+        if (!(norm > goal)) {
+            summary.termination = std::isfinite(norm) ? Termination::Converged : Termination::NotFinite;
+            return summary;
+        }
+        if (summary.iterations == options.max_iterations) {
+            summary.termination = Termination::IterationLimit;
+            return summary;
+        }
+
+        // Newton's direction, from the projected Hessian where the exact one is indefinite.
+        if (!linearized)
+            potential.linearize(q, project);
+        linearized = false;
+        const double linear_tolerance = forcing(options, summary.iterations, summary.residual, residual_before);
+        LinearSummary linear = solve_linear(
+            potential, s.gradient, linear_tolerance, options.max_linear_iterations, s.step, s.linear);
+        summary.linear_iterations += linear.iterations;
+        if (linear.negative_curvature && !project) {
+            project = true;
+            potential.linearize(q, project);
+            linear = solve_linear(
+                potential, s.gradient, linear_tolerance, options.max_linear_iterations, s.step, s.linear);
+            summary.linear_iterations += linear.iterations;
+        }
+        if (!linear.converged) {
+            summary.termination = Termination::LinearSolveFailed;
+            return summary;
+        }
+
+        // Step along it.
+        double trial_value = 0;
+        if (!options.line_search) {
+            for (int i = 0; i < n; ++i)
+                q[i] += s.step[i];
+            ++summary.iterations;
+            value = potential.value_and_gradient(q, s.gradient);
+            summary.residual = scaled_norm(s.gradient, potential.inverse_diagonal()) / scale;
+            summary.termination = std::isfinite(value) ? Termination::Converged : Termination::NotFinite;
+            return summary;
+        }
+        const double length = search_line(potential, q, value, s, trial_value);
+        if (length == 0) {
+            if (project) {
+                summary.termination = Termination::LineSearchFailed;
+                return summary;
+            }
+            project = true;
+            value = potential.value_and_gradient(q, s.gradient);
+            continue;
+        }
+        value = trial_value;
+        residual_before = summary.residual;
+        std::swap(q, s.trial);
+        std::swap(s.gradient, s.trial_gradient);
+    }
+}
+
+}  // namespace sim

@@ -1,0 +1,41 @@
+// Newton's method with backtracking line search on a potential.
+#pragma once
+
+#include "sim/solver/conjugate_gradients.h"
+
+#include <string>
+
+namespace sim {
+
+struct NewtonOptions {
+    double tolerance = 1e-4;         // stop when |gradient| <= max(tolerance * gradient_scale(), gradient_noise())
+    int max_iterations = 50;         // >= 1
+    double first_forcing = 0;        // relative tolerance of the first linear solve; 0: what the goal asks for
+    int max_linear_iterations = 20000;
+    bool line_search = true;         // false: the full step is taken, whatever it brings
+};
+
+enum class Termination { Converged, IterationLimit, LineSearchFailed, LinearSolveFailed, NotFinite };
+
+struct NewtonSummary {
+    Termination termination = Termination::NotFinite;
+    int iterations = 0, linear_iterations = 0;
+    double residual = 0;  // |gradient| / gradient_scale() at the end
+};
+
+/// In words, for a diagnosis.
+std::string to_string(Termination termination);
+
+/// Buffers kept by the caller between solves.
+struct NewtonScratch {
+    Field gradient, step, trial, trial_gradient;
+    LinearScratch linear;
+};
+
+/// Minimises W from q, which must be allowed (W finite). The Hessian is used as it is, and made positive semi-definite
+/// for the rest of the call where conjugate gradients meet negative curvature or the line search finds no descent.
+/// The linear solves are inexact: no more accurate than the goal asks for, at first no more than a tenth.
+/// On return q holds the best iterate; the caller decides what a failure means.
+NewtonSummary minimize(Potential& potential, const NewtonOptions& options, Field& q, NewtonScratch& scratch);
+
+}  // namespace sim
