@@ -1,0 +1,183 @@
+#include "sim/materials/lane_vector.h"
+#include "sim/materials/signed_svd.h"
+
+#include <catch2/catch.hpp>
+
+#include "samples.h"
+
+using namespace samples;
+using sim::lane_count;
+using sim::Lanes;
+using sim::Matrix3;
+
+namespace {
+
+struct alignas(sizeof(Lanes)) Batch {
+    Matrix3<Lanes> F, P;
+    Lanes mu, lambda, energy, A[sim::packed_size];
+};
+
+[[gnu::target_clones("arch=x86-64-v4", "default")]] void evaluate(sim::Model model,
+                                                                  Batch& batch) {
+    sim::visit(
+        model, [&](auto law) __attribute__((always_inline)) {
+            batch.energy = law.energy_and_first_piola(batch.F, batch.mu, batch.lambda, batch.P);
+            law.stiffness(batch.F, batch.mu, batch.lambda, batch.A);
+        });
+}
+
+Mat3 any_gradient(sim::Model model, int lane, Random& random) {
+    Vec3 stretches(between(random, 0.4, 2), between(random, 0.4, 2), between(random, 0.4, 2));
+    if (lane % 4 == 1)
+        stretches[1] = stretches[0];
+    if (lane % 4 == 2 && model != sim::Model::NeoHookean)
+        stretches[2] *= -0.25;
+    return stretched(stretches, random);
+}
+
+void check_lane(sim::Model model, const Batch& batch, int lane) {
+    Matrix3<double> F, P;
+    double A[sim::packed_size], energy = 0;
+    for (int n = 0; n < 9; ++n)
+        F.m[n] = batch.F.m[n][lane];
+    sim::visit(model, [&](auto law) {
+        energy = law.energy_and_first_piola(F, batch.mu[lane], batch.lambda[lane], P);
+        law.stiffness(F, batch.mu[lane], batch.lambda[lane], A);
+    });
+    // Both round, but a compiler may fuse other products into sums; sums of a few terms of size A.
+    const double scale = 1e-14 * Eigen::Map<Vec9>(A).norm();
+    CHECK(std::abs(batch.energy[lane] - energy) <= scale);
+    for (int n = 0; n < 9; ++n)
+        CHECK(std::abs(batch.P.m[n][lane] - P.m[n]) <= scale);
+    for (int n = 0; n < sim::packed_size; ++n)
+        CHECK(std::abs(batch.A[n][lane] - A[n]) <= scale);
+}
+
+void set_lane(Matrix3<Lanes>& A, int lane, const Mat3& value) {
+    for (int n = 0; n < 9; ++n)
+        A.m[n][lane] = value.data()[n];
+}
+
+Mat3 lane_of(const Matrix3<Lanes>& A, int lane) {
+    Mat3 result;
+    for (int n = 0; n < 9; ++n)
+        result.data()[n] = A.m[n][lane];
+    return result;
+}
+
+double ulps_of_log(double found, double x) {
+    const long double exact = std::log(static_cast<long double>(x));
+    const double magnitude = std::abs(static_cast<double>(exact));
+    const double ulp = std::nextafter(magnitude, 1e300) - magnitude;
+    return static_cast<double>(std::abs(found - exact)) / ulp;
+}
+
+}  // namespace
+
+TEST_CASE("every lane computes what a lone element does") {
+    Random random(6);
+    Batch batch;
+    for (const sim::Model model : all_models) {
+        for (int repeat = 0; repeat < 20; ++repeat) {
+            for (int lane = 0; lane < lane_count; ++lane) {
+                set_lane(batch.F, lane, any_gradient(model, lane, random));
+                batch.mu[lane] = between(random, 1e3, 1e6);
+                batch.lambda[lane] = between(random, 1e3, 1e6);
+            }
+            evaluate(model, batch);
+            for (int lane = 0; lane < lane_count; ++lane)
+                check_lane(model, batch, lane);
+        }
+    }
+}
+
+TEST_CASE("neo-Hookean: a collapsed lane leaves its neighbours alone") {
+    Batch batch;
+    for (int n = 0; n < 9; ++n)
+        batch.F.m[n] = sim::uniform<Lanes>(n % 4 == 0 ? 1.1 : 0.0);
+    batch.F.m[8][3] = -0.2;
+    batch.mu = sim::uniform<Lanes>(mu);
+    batch.lambda = sim::uniform<Lanes>(lambda);
+    evaluate(sim::Model::NeoHookean, batch);
+    for (int lane = 0; lane < lane_count; ++lane) {
+        CHECK(std::isinf(batch.energy[lane]) == (lane == 3));
+        CHECK(std::isnan(batch.P.m[0][lane]) == (lane == 3));
+        CHECK(std::isnan(batch.A[0][lane]) == (lane == 3));
+    }
+}
+
+TEST_CASE("nearest_rotation is that of the signed singular value decomposition") {
+    Random random(12);
+    int guessed = 0;
+    for (int repeat = 0; repeat < 500; ++repeat) {
+        Matrix3<Lanes> F;
+        for (int lane = 0; lane < lane_count; ++lane) {
+            // From mild stretches, which the closed form takes, to flat and inverted elements.
+            const double spread = lane < 4 ? std::log(2) : 5;
+            Vec3 stretches;
+            for (double& stretch : stretches)
+                stretch = std::exp(between(random, -spread, spread));
+            if (lane % 4 == 3)
+                stretches[1] *= -0.2;
+            if (lane == 5)
+                stretches[2] = stretches[0];
+            set_lane(F, lane, stretched(stretches, random));
+        }
+        const Matrix3<Lanes> R = sim::nearest_rotation(F);
+        const Lanes trust = sim::nearest_rotation_guess(F).trust;
+        for (int lane = 0; lane < lane_count; ++lane) {
+            const Mat3 f = lane_of(F, lane), r = lane_of(R, lane);
+            const auto [U, sigma, V] = sim::signed_svd(f);
+            // The rotation turns by δF/(σ_1 + σ_2) under an error δF, so rounding of F does that much.
+            const double scale = 1 + sigma[0] / (sigma[1] + sigma[2]);
+            CHECK((r - U * V.transpose()).norm() < 1e-14 * scale);
+            CHECK((r - dense(sim::nearest_rotation(plain(f)))).norm() < 1e-14 * scale);
+            CHECK((r.transpose() * r - Mat3::Identity()).norm() < 1e-14);
+            CHECK(r.determinant() > 0);
+            guessed += lane < 3 && trust[lane] > 0;
+        }
+    }
+    CHECK(guessed == 3 * 500);
+}
+
+TEST_CASE("a LaneVector stands where vector instructions can reach it") {
+    for (std::size_t size = 1; size < 20; ++size) {
+        const sim::LaneVector lanes(size);
+        CHECK(reinterpret_cast<std::uintptr_t>(lanes.data()) % sizeof(Lanes) == 0);
+    }
+}
+
+TEST_CASE("log_of is exact to one unit in the last place") {
+    Random random(7);
+    double worst = 0;
+    for (int repeat = 0; repeat < 50000; ++repeat) {
+        Lanes x;
+        for (int lane = 0; lane < lane_count; ++lane) {
+            const double spread = lane < 2   ? 700
+                                  : lane < 5 ? 1
+                                             : 1e-4;  // everywhere, near 1, nearer
+            x[lane] = std::exp(between(random, -spread, spread));
+        }
+        const Lanes logarithms = sim::log_of(x);
+        for (int lane = 0; lane < lane_count; ++lane)
+            worst = std::max({worst,
+                              ulps_of_log(logarithms[lane], x[lane]),
+                              ulps_of_log(sim::log_of(x[lane]), x[lane])});
+    }
+    CHECK(worst < 1);
+    CHECK(sim::log_of(1.0) == 0);
+    CHECK(sim::log_of(std::numeric_limits<double>::min())
+          == std::log(std::numeric_limits<double>::min()));
+    CHECK(sim::log_of(std::numeric_limits<double>::max())
+          == std::log(std::numeric_limits<double>::max()));
+}
+
+TEST_CASE("select_positive takes the first where x > 0, zero of either sign excluded") {
+    const Lanes x = {1, -1, 0.0, -0.0, 1e-320, -1e-320, 1e308, -1e308};
+    const Lanes chosen =
+        sim::select_positive(x, sim::uniform<Lanes>(7), sim::uniform<Lanes>(5));
+    for (int lane = 0; lane < lane_count; ++lane) {
+        CHECK(chosen[lane] == (x[lane] > 0 ? 7 : 5));
+        CHECK(sim::select_positive(x[lane], 7.0, 5.0) == chosen[lane]);
+    }
+}
