@@ -11,8 +11,8 @@ namespace assets {
 
 struct ImportedMesh {
     TriangleMesh mesh;
-    std::vector<std::string> repairs;  // what was mended, one sentence each, to be told to the user
-    bool closed = false;               // every edge has exactly two triangles, oppositely directed
+    std::vector<std::string> repairs;  // what was mended or is amiss, one sentence each
+    bool closed = false;  // every edge has exactly two triangles, oppositely directed
 };
 
 /// Reads a mesh: polygons triangulated, equal positions welded, degenerate and doubled triangles dropped,
