@@ -5,6 +5,7 @@
 #include "sim/materials/stable_neo_hookean.h"
 
 #include <cstring>
+#include <utility>
 
 // Compiled for two instruction sets and chosen at run time; both do the same operations in every lane.
 #define SUPPLE_LANES __attribute__((target_clones("arch=x86-64-v4", "default")))
@@ -14,6 +15,18 @@ namespace sim {
 namespace {
 
 #define ALWAYS_INLINE [[gnu::always_inline]] inline
+#define INLINED __attribute__((always_inline))  // the same for a lambda, whose place for [[ ]] binds elsewhere
+
+template <class Body, int... k>
+ALWAYS_INLINE void unroll(const Body& body, std::integer_sequence<int, k...>) {
+    (body(std::integral_constant<int, k>{}), ...);
+}
+
+/// body(0) ... body(n - 1) with constant indices: small arrays then live in registers, which loops of this size lose.
+template <int n, class Body>
+ALWAYS_INLINE void times(const Body& body) {
+    unroll(body, std::make_integer_sequence<int, n>{});
+}
 
 ALWAYS_INLINE Lanes load(const double* p) {
     Lanes v;
@@ -26,27 +39,38 @@ ALWAYS_INLINE void add_to(double* p, const Lanes& v) {
     std::memcpy(p, &sum, sizeof sum);
 }
 
+/// The eight values of one component, at the corners or as coefficients of the modes.
+struct alignas(sizeof(Lanes)) Eight {
+    Lanes v[8];
+};
+
 /// Values at the eight corners -> coefficients h_m = Σ_a ξ_m(a) v_a of the modes 1, ξ, η, ξη, ζ, ξζ, ηζ, ξηζ with
 /// ξ, η, ζ = ±1 at the corners, so that v(ξ,η,ζ) = Σ_m h_m/8 ξ_m (the Walsh-Hadamard transform of size 8).
-ALWAYS_INLINE void to_modes(Lanes v[8]) {
-    for (int bit = 1; bit < 8; bit *= 2)
-        for (int a = 0; a < 8; ++a)
-            if (!(a & bit)) {
-                const Lanes low = v[a], high = v[a | bit];
-                v[a] = low + high;
-                v[a | bit] = high - low;
+ALWAYS_INLINE void to_modes(Eight& e) {
+    times<3>([&](auto axis) INLINED {
+        times<8>([&](auto a) INLINED {
+            constexpr int bit = 1 << axis;
+            if constexpr (!(a & bit)) {
+                const Lanes low = e.v[a], high = e.v[a | bit];
+                e.v[a] = low + high;
+                e.v[a | bit] = high - low;
             }
+        });
+    });
 }
 
 /// The transpose of to_modes: ∂/∂v_a = Σ_m ξ_m(a) ∂/∂h_m.
-ALWAYS_INLINE void from_modes(Lanes g[8]) {
-    for (int bit = 1; bit < 8; bit *= 2)
-        for (int a = 0; a < 8; ++a)
-            if (!(a & bit)) {
-                const Lanes low = g[a], high = g[a | bit];
-                g[a] = low - high;
-                g[a | bit] = low + high;
+ALWAYS_INLINE void from_modes(Eight& e) {
+    times<3>([&](auto axis) INLINED {
+        times<8>([&](auto a) INLINED {
+            constexpr int bit = 1 << axis;
+            if constexpr (!(a & bit)) {
+                const Lanes low = e.v[a], high = e.v[a | bit];
+                e.v[a] = low - high;
+                e.v[a | bit] = low + high;
             }
+        });
+    });
 }
 
 // Modes by kind: the three linear ones carry F, the three bilinear and the trilinear one are hourglass modes.
@@ -54,43 +78,43 @@ constexpr int linear_mode[3] = {1, 2, 4};
 constexpr int bilinear_mode[3] = {3, 5, 6};
 constexpr int trilinear_mode = 7;
 
-ALWAYS_INLINE void load_modes(const Brick& brick, const double* values, int slot, Lanes v[8]) {
-    for (int a = 0; a < 8; ++a)
-        v[a] = load(values + slot + brick.step[a]);
-    to_modes(v);
+ALWAYS_INLINE void load_modes(const Brick& brick, const BrickFields& fields, int slot, Eight h[3]) {
+    times<3>([&](auto i) INLINED {
+        times<8>([&](auto a) INLINED { h[i].v[a] = load(fields.in[i] + slot + brick.step[a]); });
+        to_modes(h[i]);
+    });
 }
 
-ALWAYS_INLINE void add_modes(const Brick& brick, double* values, int slot, Lanes g[8]) {
-    from_modes(g);
-    for (int a = 0; a < 8; ++a)
-        add_to(values + slot + brick.step[a], g[a]);
+ALWAYS_INLINE void add_modes(const Brick& brick, const BrickFields& fields, int slot, Eight g[3]) {
+    times<3>([&](auto i) INLINED {
+        g[i].v[0] = Lanes{};
+        from_modes(g[i]);
+        times<8>([&](auto a) INLINED { add_to(fields.out[i] + slot + brick.step[a], g[i].v[a]); });
+    });
 }
 
 /// F of a batch; the identity in empty slots. ∂x/∂X_j = h_j / (4 s).
-ALWAYS_INLINE Matrix3<Lanes> gradient_of_modes(const Lanes h[3][8], double edge) {
+ALWAYS_INLINE Matrix3<Lanes> gradient_of_modes(const Eight h[3], const Lanes& volume, double edge) {
     Matrix3<Lanes> F;
-    for (int j = 0; j < 3; ++j)
-        for (int i = 0; i < 3; ++i)
-            F.m[3 * j + i] = h[i][linear_mode[j]] * (1 / (4 * edge));
+    times<9>([&](auto k) INLINED {
+        const Lanes entry = h[k % 3].v[linear_mode[k / 3]] * (1 / (4 * edge));
+        F.m[k] = select_positive(volume, entry, uniform<Lanes>(k % 4 == 0 ? 1 : 0));
+    });
     return F;
 }
 
-ALWAYS_INLINE void set_identity_where_empty(const Lanes& volume, Matrix3<Lanes>& F) {
-    for (int k = 0; k < 9; ++k)
-        F.m[k] = select_positive(volume, F.m[k], uniform<Lanes>(k % 4 == 0 ? 1 : 0));
-}
-
 /// ∂E_hg/∂h_m = k h_m for bilinear modes, k/2 h_m for the trilinear one; returns E_hg.
-ALWAYS_INLINE Lanes hourglass(const Lanes& k, const Lanes h[3][8], Lanes g[3][8]) {
+ALWAYS_INLINE Lanes hourglass(const Lanes& k, const Eight h[3], Eight g[3]) {
     Lanes energy{};
-    for (int i = 0; i < 3; ++i) {
-        for (const int m : bilinear_mode) {
-            g[i][m] = k * h[i][m];
-            energy += g[i][m] * h[i][m];
-        }
-        g[i][trilinear_mode] = 0.5 * k * h[i][trilinear_mode];
-        energy += g[i][trilinear_mode] * h[i][trilinear_mode];
-    }
+    times<3>([&](auto i) INLINED {
+        times<3>([&](auto m) INLINED {
+            constexpr int mode = bilinear_mode[m];
+            g[i].v[mode] = k * h[i].v[mode];
+            energy += g[i].v[mode] * h[i].v[mode];
+        });
+        g[i].v[trilinear_mode] = 0.5 * k * h[i].v[trilinear_mode];
+        energy += g[i].v[trilinear_mode] * h[i].v[trilinear_mode];
+    });
     return 0.5 * energy;
 }
 
@@ -137,26 +161,20 @@ SUPPLE_LANES
 double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fields) {
     Lanes energy{};
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
-        const int slot = brick.batch[b];
-        alignas(64) Lanes h[3][8], g[3][8];
-        for (int i = 0; i < 3; ++i)
-            load_modes(brick, fields.in[i], slot, h[i]);
-        Matrix3<Lanes> F = gradient_of_modes(h, edge), P{};
-        set_identity_where_empty(brick.volume[b], F);
+        Eight h[3], g[3];
+        load_modes(brick, fields, brick.batch[b], h);
+        const Matrix3<Lanes> F = gradient_of_modes(h, brick.volume[b], edge);
 
         Lanes psi{};
+        Matrix3<Lanes> P{};
         take_law<NeoHookean>(brick, b, Model::NeoHookean, F, psi, P);
         take_law<StableNeoHookean>(brick, b, Model::StableNeoHookean, F, psi, P);
         take_law<FixedCorotated>(brick, b, Model::FixedCorotated, F, psi, P);
 
         energy += brick.volume[b] * psi + hourglass(brick.hourglass[b], h, g);
         const Lanes scale = brick.volume[b] * (1 / (4 * edge));
-        for (int i = 0; i < 3; ++i) {
-            g[i][0] = Lanes{};
-            for (int j = 0; j < 3; ++j)
-                g[i][linear_mode[j]] = scale * P.m[3 * j + i];
-            add_modes(brick, fields.out[i], slot, g[i]);
-        }
+        times<9>([&](auto k) INLINED { g[k % 3].v[linear_mode[k / 3]] = scale * P.m[k]; });
+        add_modes(brick, fields, brick.batch[b], g);
     }
     double sum = 0;
     for (int l = 0; l < lane_count; ++l)
@@ -167,11 +185,9 @@ double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fi
 SUPPLE_LANES
 void linearize_brick(Brick& brick, double edge, const BrickFields& fields) {
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
-        alignas(64) Lanes h[3][8];
-        for (int i = 0; i < 3; ++i)
-            load_modes(brick, fields.in[i], brick.batch[b], h[i]);
-        Matrix3<Lanes> F = gradient_of_modes(h, edge);
-        set_identity_where_empty(brick.volume[b], F);
+        Eight h[3];
+        load_modes(brick, fields, brick.batch[b], h);
+        const Matrix3<Lanes> F = gradient_of_modes(h, brick.volume[b], edge);
         Lanes* A = &brick.stiffness[45 * b];
         take_stiffness<NeoHookean>(brick, b, Model::NeoHookean, F, A);
         take_stiffness<StableNeoHookean>(brick, b, Model::StableNeoHookean, F, A);
@@ -181,30 +197,26 @@ void linearize_brick(Brick& brick, double edge, const BrickFields& fields) {
 
 SUPPLE_LANES
 void add_brick_product(const Brick& brick, double edge, const BrickFields& fields) {
-    const double scale = 1 / (16 * edge * edge);  // 1/(4s) from the modes to F and back
+    const double scale = 1 / (16 * edge * edge);  // 1/(4s) from the modes to F, and 1/(4s) back
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
-        const int slot = brick.batch[b];
-        alignas(64) Lanes h[3][8], g[3][8];
-        for (int i = 0; i < 3; ++i)
-            load_modes(brick, fields.in[i], slot, h[i]);
-        alignas(64) Lanes dF[9], dP[9] = {};
-        for (int r = 0; r < 9; ++r)
-            dF[r] = scale * h[r % 3][linear_mode[r / 3]];
+        Eight h[3], g[3];
+        load_modes(brick, fields, brick.batch[b], h);
+        Matrix3<Lanes> dF, dP{};
+        times<9>([&](auto k) INLINED { dF.m[k] = scale * h[k % 3].v[linear_mode[k / 3]]; });
         const Lanes* A = &brick.stiffness[45 * b];
-        for (int r = 0; r < 9; ++r) {
-            dP[r] += *A++ * dF[r];
-            for (int c = r + 1; c < 9; ++c, ++A) {
-                dP[r] += *A * dF[c];
-                dP[c] += *A * dF[r];
-            }
-        }
+        times<9>([&](auto r) INLINED {
+            times<9>([&](auto c) INLINED {
+                if constexpr (c >= r) {
+                    constexpr int entry = r * (17 - r) / 2 + c;  // of the packed upper triangle
+                    dP.m[r] += A[entry] * dF.m[c];
+                    if constexpr (c > r)
+                        dP.m[c] += A[entry] * dF.m[r];
+                }
+            });
+        });
         hourglass(brick.hourglass[b], h, g);
-        for (int i = 0; i < 3; ++i) {
-            g[i][0] = Lanes{};
-            for (int j = 0; j < 3; ++j)
-                g[i][linear_mode[j]] = dP[3 * j + i];
-            add_modes(brick, fields.out[i], slot, g[i]);
-        }
+        times<9>([&](auto k) INLINED { g[k % 3].v[linear_mode[k / 3]] = dP.m[k]; });
+        add_modes(brick, fields, brick.batch[b], g);
     }
 }
 
@@ -215,24 +227,18 @@ void add_brick_diagonal(const Brick& brick, double edge, const BrickFields& fiel
     constexpr int packed_diagonal[9] = {0, 9, 17, 24, 30, 35, 39, 42, 44};
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
         const Lanes* A = &brick.stiffness[45 * b];
-        for (int i = 0; i < 3; ++i) {
-            Lanes sum{};
-            for (int j = 0; j < 3; ++j)
-                sum += A[packed_diagonal[3 * j + i]];
-            const Lanes value = sum * (1 / (16 * edge * edge)) + 3.5 * brick.hourglass[b];
-            for (int a = 0; a < 8; ++a)
-                add_to(fields.out[i] + brick.batch[b] + brick.step[a], value);
-        }
+        times<3>([&](auto i) INLINED {
+            Lanes sum = A[packed_diagonal[i]] + A[packed_diagonal[3 + i]] + A[packed_diagonal[6 + i]];
+            sum = sum * (1 / (16 * edge * edge)) + 3.5 * brick.hourglass[b];
+            times<8>([&](auto a) INLINED { add_to(fields.out[i] + brick.batch[b] + brick.step[a], sum); });
+        });
     }
 }
 
 Lanes brick_J(const Brick& brick, int b, double edge, const BrickFields& fields) {
-    alignas(64) Lanes h[3][8];
-    for (int i = 0; i < 3; ++i)
-        load_modes(brick, fields.in[i], brick.batch[b], h[i]);
-    Matrix3<Lanes> F = gradient_of_modes(h, edge);
-    set_identity_where_empty(brick.volume[b], F);
-    return determinant(F);
+    Eight h[3];
+    load_modes(brick, fields, brick.batch[b], h);
+    return determinant(gradient_of_modes(h, brick.volume[b], edge));
 }
 
 }  // namespace sim

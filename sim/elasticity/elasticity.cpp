@@ -216,8 +216,8 @@ Elasticity::SmallestJ Elasticity::smallest_J(const Vec3p* x) {
         for (std::size_t b = 0; b < brick.batch.size(); ++b) {
             const Lanes J = brick_J(brick, static_cast<int>(b), edge_, fields(brick));
             for (int l = 0; l < lane_count; ++l)
-                if (brick.domain[8 * b + l] >= 0 && !(J[l] >= smallest.J))
-                    smallest = {J[l], brick.domain[8 * b + l]};
+                if (brick.domain[lane_count * b + l] >= 0 && !(J[l] >= smallest.J))
+                    smallest = {J[l], brick.domain[lane_count * b + l]};
         }
     return smallest;
 }
