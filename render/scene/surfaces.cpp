@@ -1,0 +1,114 @@
+#include "render/scene/surfaces.h"
+
+#include "assets/base/error.h"
+#include "render/image/view_transform.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace render {
+
+namespace {
+
+constexpr float skin_per_opacity =
+    0.5f;  // the rest of a clear body's opacity lies in its inside
+constexpr float depth_per_opacity =
+    2.0f;  // optical depth across the body, in units of -ln(colour)
+
+Vec3f mean(const std::vector<Vec3f>& values) {
+    Vec3f sum = Vec3f::Zero();
+    for (const Vec3f& value : values)
+        sum += value;
+    return values.empty() ? sum : Vec3f(sum / float(values.size()));
+}
+
+float mean_edge_of_bounds(const std::vector<Vec3f>& points) {
+    Vec3f low = points[0], high = points[0];
+    for (const Vec3f& point : points) {
+        low = low.cwiseMin(point);
+        high = high.cwiseMax(point);
+    }
+    return (high - low).mean();
+}
+
+// The inside takes the colour out of white light over about the body's size.
+Material material_of(const assets::CachedSurface& surface, const Look& look) {
+    Material material;
+    material.roughness = look.roughness;
+    if (look.opacity >= 1)
+        return material;
+    const Vec3f tint = look.color_by == ColorBy::Region ? mean(surface.region_color)
+                                                        : linear_from_srgb(look.color);
+    const float size = mean_edge_of_bounds(surface.rest_positions);
+    material.opacity = skin_per_opacity * look.opacity;
+    if (size > 0)
+        material.absorption = -tint.array().max(0.02f).min(1.0f).log()
+                              * (depth_per_opacity * look.opacity / size);
+    return material;
+}
+
+}  // namespace
+
+Vec3f stretch_color(float stretch) {
+    static constexpr std::array<std::array<int, 3>, 9> knots{{{68, 1, 84},
+                                                              {71, 45, 123},
+                                                              {59, 82, 139},
+                                                              {44, 114, 142},
+                                                              {33, 145, 140},
+                                                              {40, 174, 128},
+                                                              {94, 201, 98},
+                                                              {173, 220, 48},
+                                                              {253, 231, 37}}};
+    const float at = std::clamp(stretch - 1, 0.0f, 1.0f) * float(knots.size() - 1);
+    const std::size_t i = std::min(std::size_t(at), knots.size() - 2);
+    const auto color = [](const std::array<int, 3>& rgb) {
+        return Vec3f(float(rgb[0]), float(rgb[1]), float(rgb[2]));
+    };
+    const float t = at - float(i);
+    return linear_from_srgb(Vec3f(((1 - t) * color(knots[i]) + t * color(knots[i + 1])) / 255));
+}
+
+Surface::Surface(const assets::CachedSurface& cached, const Look& look)
+    : cached_(cached),
+      look_(look),
+      topology_(split_creases(cached.triangles, cached.rest_positions)),
+      material_(cached.rest_positions.empty() ? Material{} : material_of(cached, look)) {}
+
+std::vector<Vec3f> Surface::colors(const assets::SurfaceFrame& frame) const {
+    const std::size_t n = cached_.rest_positions.size();
+    switch (look_.color_by) {
+        case ColorBy::Look:
+            return std::vector<Vec3f>(n, linear_from_srgb(look_.color));
+        case ColorBy::Region:
+            assets::check(cached_.region_color.size() == n, "a surface lacks region colours");
+            return cached_.region_color;
+        case ColorBy::Stretch:
+            break;
+    }
+    const auto stretch = frame.attributes.find("stretch");
+    assets::check(stretch != frame.attributes.end() && stretch->second.size() == n,
+                  "a frame lacks stretches");
+    std::vector<Vec3f> result;
+    for (const float value : stretch->second)
+        result.push_back(stretch_color(value));
+    return result;
+}
+
+Mesh Surface::at(const assets::SurfaceFrame& frame) const {
+    const std::size_t n = cached_.rest_positions.size();
+    assets::check(frame.positions.size() == n && frame.normals.size() == n,
+                  "a frame does not fit its surface");
+    Mesh mesh;
+    mesh.material = material_;
+    mesh.triangles = topology_.triangles;
+    mesh.normals = split_normals(topology_, frame.positions, frame.normals);
+    const std::vector<Vec3f> vertex_colors = colors(frame);
+    for (const int vertex : topology_.source) {
+        mesh.positions.push_back(frame.positions[vertex]);
+        mesh.colors.push_back(vertex_colors[vertex].cwiseMax(0.0f).cwiseMin(1.0f));
+    }
+    return mesh;
+}
+
+}  // namespace render
