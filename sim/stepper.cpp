@@ -3,6 +3,10 @@
 #include "sim/base/parallel.h"
 #include "sim/diagnosis.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include <algorithm>
 #include <cmath>
 
 namespace sim {
@@ -50,7 +54,10 @@ void Stepper::choose_free_corners(const Field& x) {
 }
 
 void Stepper::transfer(const State& state, double dt) {
-    // Mass and momentum to the degrees of freedom: M = Tᵀ m, M q_n = Tᵀ (m v).
+    // Mass and momentum to the degrees of freedom: M = Tᵀ m, M q_n = Tᵀ (m v). Lumped means over the corners around a
+    // node see a rotation too slow where corners lie on one side of it, so the body's rigid motion goes over by its
+    // value at the node and only the rest by means: rigid motion is exact, and so is momentum, as Σ_i w_ic x_i = x_c.
+    const std::vector<RigidMotion> rigid = rigid_motions(state);
     const int n = map_.n_dofs();
     auto& step = potential_.step();
     dof_mass_.resize(n);
@@ -59,8 +66,9 @@ void Stepper::transfer(const State& state, double dt) {
     step.mass.resize(n);
     corner_.resize(state.x.size());
     map_.apply_transposed(assembly_.mass, dof_mass_);
-    for (std::size_t c = 0; c < state.x.size(); ++c)
-        corner_[c] = assembly_.mass[c] * state.v[c];
+    for (std::size_t b = 0; b < rigid.size(); ++b)
+        for (int c = ranges_[b].begin; c < ranges_[b].end; ++c)
+            corner_[c] = assembly_.mass[c] * (state.v[c] - rigid[b].at(state.x[c]));
     map_.apply_transposed(corner_, q_n_);
     map_.apply_transposed(assembly_.force, step.q_tilde);
 
@@ -75,7 +83,7 @@ void Stepper::transfer(const State& state, double dt) {
         inverse_mass_[i] = inverse_mass;
         if (!(mass > 0))
             step.is_free[i] = Vec3p{};
-        q_n_[i] *= inverse_mass;
+        q_n_[i] = rigid[map_.dof_body()[i]].at(map_.dof_position()[i]) + inverse_mass * q_n_[i];
         step.q_tilde[i] = (q_n_[i] + dt * inverse_mass * step.q_tilde[i]) / damped;
         step.mass[i] = damped * dof_mass_[i];
     }
@@ -86,6 +94,33 @@ void Stepper::transfer(const State& state, double dt) {
     step.static_force.clear();
     for (const int c : prescribed_.corners)
         step.is_free[map_.dof_of_corner()[c]] = prescribed_.is_free[c];
+}
+
+std::vector<RigidMotion> Stepper::rigid_motions(const State& state) const {
+    std::vector<RigidMotion> result(ranges_.size());
+    for (std::size_t b = 0; b < ranges_.size(); ++b) {
+        const auto& [begin, end, cell_size] = ranges_[b];
+        RigidMotion& rigid = result[b];
+        double mass = 0;
+        for (int c = begin; c < end; ++c) {
+            mass += assembly_.mass[c][0];
+            rigid.centre += assembly_.mass[c] * state.x[c];
+            rigid.velocity += assembly_.mass[c] * state.v[c];
+        }
+        rigid.centre /= mass;
+        rigid.velocity /= mass;
+        // Inertia I = Σ m (r² 1 - r rᵀ) and angular momentum L about the centre; I spin = L.
+        Mat3 second_moment = Mat3::Zero();
+        Vec3 L = Vec3::Zero();
+        for (int c = begin; c < end; ++c) {
+            const Vec3 r = unpadded(state.x[c] - rigid.centre), v = unpadded(state.v[c] - rigid.velocity);
+            second_moment += assembly_.mass[c][0] * r * r.transpose();
+            L += assembly_.mass[c][0] * r.cross(v);
+        }
+        const Mat3 inertia = second_moment.trace() * Mat3::Identity() - second_moment;
+        rigid.spin = padded(inertia.ldlt().solve(L));
+    }
+    return result;
 }
 
 void Stepper::guess(const State& state, double dt) {
@@ -138,6 +173,7 @@ void Stepper::move(State& state, double dt) {
     const int n_corners = static_cast<int>(state.x.size());
     Field& u = corner_;
     map_.apply(q_, u);
+    balance_momentum(state, dt, u);
     Field contact_velocity;
     if (assembly_.bodies.size() > 1) {
         contact_velocity = u;
@@ -176,6 +212,27 @@ void Stepper::move(State& state, double dt) {
                 state.x[c][axis] = prescribed_.target[c][axis];
     state.last_dt = dt;
     state.time += dt;
+}
+
+void Stepper::balance_momentum(const State& state, double dt, Field& u) const {
+    // The solve is inexact. The momentum of a body that nothing holds is known without it: inner forces sum to zero.
+    const double damped = 1 + scene_.solver.damping * dt;
+    for (const AssembledBody& body : assembly_.bodies) {
+        const bool held = std::any_of(prescribed_.corners.begin(), prescribed_.corners.end(), [&](int c) {
+            return c >= body.begin && c < body.end;
+        });
+        if (held || colliders_.touches(potential_.positions(), body.begin, body.end))
+            continue;
+        Vec3p missing{};
+        double mass = 0;
+        for (int c = body.begin; c < body.end; ++c) {
+            const Vec3p due = (assembly_.mass[c] * state.v[c] + dt * assembly_.force[c]) / damped;
+            missing += due - assembly_.mass[c] * u[c];
+            mass += assembly_.mass[c][0];
+        }
+        for (int c = body.begin; c < body.end; ++c)
+            u[c] += missing / mass;
+    }
 }
 
 void Stepper::set_reactions(const State& state, double dt) {

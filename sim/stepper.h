@@ -18,6 +18,17 @@ struct State {
     double last_dt = 0;   // of that step [s]
 };
 
+/// v(x) = velocity + spin × (x - centre): the rigid motion with a body's linear and angular momentum.
+struct RigidMotion {
+    Vec3p centre{}, velocity{}, spin{};
+
+    Vec3p at(const Vec3p& x) const {
+        const Vec3p r = x - centre;
+        return velocity
+               + Vec3p{spin[1] * r[2] - spin[2] * r[1], spin[2] * r[0] - spin[0] * r[2], spin[0] * r[1] - spin[1] * r[0], 0};
+    }
+};
+
 class Stepper {
   public:
     Stepper(const Scene& scene, Assembly& assembly);
@@ -46,8 +57,10 @@ class Stepper {
   private:
     void choose_free_corners(const Field& x);
     void transfer(const State& state, double dt);
+    std::vector<RigidMotion> rigid_motions(const State& state) const;
     void guess(const State& state, double dt);
     void move(State& state, double dt);
+    void balance_momentum(const State& state, double dt, Field& u) const;
     void set_reactions(const State& state, double dt);
     bool try_equilibrium(State& state, double time_begin, double time_end, NewtonSummary& summary);
     [[noreturn]] void fail(const State& state, double dt, const NewtonSummary& summary);

@@ -26,10 +26,15 @@ Vec3 carried(const Lattice& lattice, const Binding& binding, std::span<const Vec
 
 /// F of a domain from its corners at local coordinates (0.5,0.5,0.5), or at those of `binding`.   (3×3)
 Mat3 deformation_gradient(const Lattice& lattice, int domain, std::span<const Vec3> corners);
+Mat3 deformation_gradient(const Lattice& lattice,
+                          const Binding& binding,
+                          std::span<const Vec3> corners);
 
 /// A fine surface of a body, bound once.
 class EmbeddedSurface {
   public:
+    /// Vertices are split where faces meet at more than 40 degrees, so that normals keep crisp edges crisp. Throws
+    /// Error(Input) where the skin's source cannot be read, or no part of it is near the body.
     EmbeddedSurface(const Lattice& lattice, const Body& body, const Skin& skin);
 
     /// Topology, rest positions and region colours (sRGB of the shot made linear) for the cache.
@@ -43,8 +48,9 @@ class EmbeddedSurface {
 
   private:
     assets::CachedSurface cached_;
-    std::vector<Vec3> rest_normals_;
-    std::vector<Binding> bindings_;
+    std::vector<Vec3> rest_normals_;  // (#V) unit
+    std::vector<Binding> bindings_;   // (#V)
+    std::vector<float> region_;       // (#V) index, as the attribute
 };
 
 }  // namespace sim

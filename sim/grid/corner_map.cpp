@@ -42,22 +42,27 @@ void CornerMap::rebuild(const Field& corners,
                         const std::vector<BodyRange>& bodies) {
     dof_of_corner_.assign(corners.size(), -1);
     free_corner_.clear();
-    for (std::size_t c = 0; c < corners.size(); ++c)
-        if (free[c]) {
-            dof_of_corner_[c] = n_free();
-            free_corner_.push_back(static_cast<int>(c));
-        }
+    dof_body_.clear();
+    dof_position_.clear();
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        for (int c = bodies[b].begin; c < bodies[b].end; ++c)
+            if (free[c]) {
+                dof_of_corner_[c] = n_free();
+                free_corner_.push_back(c);
+                dof_body_.push_back(static_cast<int>(b));
+                dof_position_.push_back(corners[c]);
+            }
     n_nodes_ = 0;
     cells_.clear();
     slave_corner_.clear();
     slave_weights_.clear();
     node_sources_.clear();
-    for (const BodyRange& body : bodies)
-        rebuild_body(corners, body);
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        rebuild_body(corners, bodies[b], static_cast<int>(b));
     cell_sums_.resize(8 * cells_.size());
 }
 
-void CornerMap::rebuild_body(const Field& corners, const BodyRange& body) {
+void CornerMap::rebuild_body(const Field& corners, const BodyRange& body, int index) {
     // The box of cells that holds all slaved corners.
     const double inverse_size = 1 / body.cell_size;
     CellBox box;
@@ -114,6 +119,16 @@ void CornerMap::rebuild_body(const Field& corners, const BodyRange& body) {
         slave_weights_[slave] = trilinear_weights(scaled - floor_of(scaled));
     }
     number_nodes(n, first_new_cell, base);
+
+    dof_body_.resize(n_dofs(), index);
+    dof_position_.resize(n_dofs());
+    for (std::size_t k = 0; k < base.size(); ++k) {
+        const Vec3p cell = box.low + Vec3p{double(base[k] % n[0]), double(base[k] / n[0] % n[1]),
+                                           double(base[k] / (n[0] * n[1])), 0};
+        for (int a = 0; a < 8; ++a)
+            dof_position_[cells_[first_new_cell + k].nodes[a]] =
+                (cell + Vec3p{double(a & 1), double(a >> 1 & 1), double(a >> 2), 0}) * body.cell_size;
+    }
 }
 
 void CornerMap::number_nodes(const std::array<int, 3>& n_cells_per_axis,

@@ -36,6 +36,12 @@ class CornerMap {
     /// The corner of each free degree of freedom (#free).
     const std::vector<int>& free_corner() const { return free_corner_; }
 
+    /// Where each degree of freedom sits (#dofs): its corner, or its node [m]. T reproduces linear functions of it.
+    const Field& dof_position() const { return dof_position_; }
+
+    /// The body of each degree of freedom (#dofs).
+    const std::vector<int>& dof_body() const { return dof_body_; }
+
     /// u = T q.   q (#dofs), u (#C)
     void apply(const Field& q, Field& u) const;
 
@@ -51,13 +57,14 @@ class CornerMap {
         int begin = 0, end = 0;    // its range of slaves
     };
 
-    void rebuild_body(const Field& corners, const BodyRange& body);
-    void number_nodes(const std::array<int, 3>& n_nodes_per_axis, int first_new_cell, const std::vector<int>& base);
+    void rebuild_body(const Field& corners, const BodyRange& body, int index);
+    void number_nodes(const std::array<int, 3>& n_cells_per_axis, int first_new_cell, const std::vector<int>& base);
     template <bool squared>
     void gather(const Field& f, Field& q) const;
 
     int n_nodes_ = 0;
-    std::vector<int> dof_of_corner_, free_corner_;
+    std::vector<int> dof_of_corner_, free_corner_, dof_body_;
+    Field dof_position_;
     std::vector<Cell> cells_;
     std::vector<int> slave_corner_;                     // (#slaves) grouped by cell
     std::vector<std::array<double, 8>> slave_weights_;  // (#slaves)

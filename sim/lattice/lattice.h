@@ -16,17 +16,20 @@ struct Lattice {
     double edge = 0;       // s [m]
     Vec3 origin{0, 0, 0};  // rest position of the corner with coordinates (0,0,0) [m]
 
-    std::vector<std::array<int, 3>> cell;            // (#D) integer coordinates of each domain's lowest corner
-    std::vector<std::array<int, 8>> corners;         // (#D) its corners
-    std::vector<double> fill;                        // (#D) filled fraction of the cube, (0, 1]
-    std::vector<int> region;                         // (#D) region with the largest share
-    std::vector<double> mu, lambda;                  // (#D) Lamé parameters of the filled part [Pa], share-weighted
-    std::vector<double> density;                     // (#D) of the filled part [kg/m³], share-weighted
-    std::vector<std::array<int, 3>> corner_cell;     // (#C) integer coordinates
-    std::vector<Vec3> corner_rest;                   // (#C) [m]
-    std::vector<double> corner_mass;                 // (#C) an eighth of each adjacent domain's mass [kg]
-    std::vector<double> corner_volume;               // (#C) the same share of filled volume [m³]
-    std::vector<double> corner_outside;              // (#C) distance outside the body's surface at rest, >= 0 [m]
+    std::vector<std::array<int, 3>>
+        cell;  // (#D) integer coordinates of each domain's lowest corner
+    std::vector<std::array<int, 8>> corners;  // (#D) its corners
+    std::vector<double> fill;                 // (#D) filled fraction of the cube, (0, 1]
+    std::vector<int> region;                  // (#D) region with the largest share
+    std::vector<double> mu,
+        lambda;  // (#D) Lamé parameters of the filled part [Pa], share-weighted
+    std::vector<double> density;  // (#D) of the filled part [kg/m³], share-weighted
+    std::vector<std::array<int, 3>> corner_cell;  // (#C) integer coordinates
+    std::vector<Vec3> corner_rest;                // (#C) [m]
+    std::vector<double> corner_mass;    // (#C) an eighth of each adjacent domain's mass [kg]
+    std::vector<double> corner_volume;  // (#C) the same share of filled volume [m³]
+    std::vector<double>
+        corner_outside;  // (#C) distance outside the body's surface at rest, >= 0 [m]
     std::vector<double> region_volume, region_mass;  // (#regions) [m³], [kg]
 
     int n_domains() const { return static_cast<int>(cell.size()); }
@@ -44,7 +47,9 @@ Lattice make_lattice(const Body& body, std::vector<std::string>* repairs = nullp
 
 /// Corners of the part that `select` names: those whose rest position lies in it (within 1e-6 s, so that rounding
 /// does not decide). Throws Error(Input) with select.key where there are none.
-std::vector<int> select_corners(const Lattice& lattice, const Body& body, const Selector& select);
+std::vector<int> select_corners(const Lattice& lattice,
+                                const Body& body,
+                                const Selector& select);
 
 /// λ = E nu / ((1+nu)(1-2nu)), μ = E / (2 (1+nu)).   [Pa]
 double lame_lambda(double young_modulus, double poisson_ratio);

@@ -1,0 +1,176 @@
+#include "sim/lattice/lattice.h"
+
+#include "assets/base/error.h"
+#include "sim/lattice/region_report.h"
+#include "sim/lattice/voxels.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace sim {
+
+namespace {
+
+/// What fills each domain.
+void set_domains(const std::vector<FilledCube>& cubes,
+                 const std::vector<Region>& regions,
+                 Lattice& lattice) {
+    const std::size_t n = cubes.size();
+    lattice.cell.resize(n);
+    lattice.fill.resize(n);
+    lattice.region.resize(n);
+    lattice.mu.assign(n, 0);
+    lattice.lambda.assign(n, 0);
+    lattice.density.assign(n, 0);
+    for (std::size_t p = 0; p < n; ++p) {
+        const FilledCube& cube = cubes[p];
+        lattice.cell[p] = cube.cell;
+        lattice.fill[p] = static_cast<double>(cube.filled) / samples_per_cube;
+        int most = 0;
+        for (const auto& [r, count] : cube.samples) {
+            const Region& region = regions[r];
+            const double share = static_cast<double>(count) / cube.filled;
+            lattice.mu[p] += share * lame_mu(region.young_modulus, region.poisson_ratio);
+            lattice.lambda[p] +=
+                share * lame_lambda(region.young_modulus, region.poisson_ratio);
+            lattice.density[p] += share * region.density;
+            if (count > most) {
+                most = count;
+                lattice.region[p] = r;
+            }
+        }
+    }
+}
+
+/// Numbers the corners of all domains by z, then y, then x. Two slabs of domains meet at each plane of corners.
+void set_corners(const std::array<int, 3>& n, Lattice& lattice) {
+    const int n_domains = lattice.n_domains();
+    lattice.corners.resize(n_domains);
+    std::vector<int> slab_begin(n[2] + 2, n_domains);  // first domain with cell z >= k
+    for (int p = n_domains - 1; p >= 0; --p)
+        slab_begin[lattice.cell[p][2]] = p;
+    for (int k = n[2]; k > 0; --k)
+        slab_begin[k - 1] = std::min(slab_begin[k - 1], slab_begin[k]);
+
+    const int width = n[0] + 1;
+    std::vector<int> plane;  // corner number by (x, y): -1 unused
+    for (int k = 0; k <= n[2]; ++k) {
+        plane.assign(static_cast<std::size_t>(width) * (n[1] + 1), -1);
+        const auto for_corners_in_plane = [&](auto&& visit) {
+            for (int p = slab_begin[std::max(k - 1, 0)]; p < slab_begin[k + 1]; ++p)
+                for (int a = 0; a < 8; ++a) {
+                    const auto& [x, y, z] = lattice.cell[p];
+                    if (z + (a >> 2 & 1) == k)
+                        visit(p,
+                              a,
+                              plane[static_cast<std::size_t>(y + (a >> 1 & 1)) * width + x
+                                    + (a & 1)]);
+                }
+        };
+        for_corners_in_plane([](int, int, int& number) { number = 0; });
+        for (std::size_t i = 0; i < plane.size(); ++i)
+            if (plane[i] == 0) {
+                plane[i] = static_cast<int>(lattice.corner_cell.size());
+                lattice.corner_cell.push_back(
+                    {static_cast<int>(i % width), static_cast<int>(i / width), k});
+            }
+        for_corners_in_plane([&](int p, int a, int number) { lattice.corners[p][a] = number; });
+    }
+}
+
+void set_corner_shares(const CubeGrid& grid, const assets::Solid& solid, Lattice& lattice) {
+    const std::size_t n = lattice.corner_cell.size();
+    lattice.corner_rest.resize(n);
+    lattice.corner_outside.resize(n);
+    lattice.corner_mass.assign(n, 0);
+    lattice.corner_volume.assign(n, 0);
+    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t c) {
+        const auto& [x, y, z] = lattice.corner_cell[c];
+        lattice.corner_rest[c] = grid.point(x, y, z);
+        lattice.corner_outside[c] =
+            std::max(0.0, solid.signed_distance(lattice.corner_rest[c]));
+    });
+    for (int p = 0; p < lattice.n_domains(); ++p)
+        for (const int c : lattice.corners[p]) {
+            lattice.corner_volume[c] += lattice.domain_volume(p) / 8;
+            lattice.corner_mass[c] += lattice.domain_volume(p) * lattice.density[p] / 8;
+        }
+}
+
+}  // namespace
+
+Lattice make_lattice(const Body& body, std::vector<std::string>* repairs) {
+    assets::check(body.domain_size > 0, "the domain size is positive");
+    LevelMaker maker(body);
+    const assets::Solid& solid = maker.solid();
+    const RegionLayers regions(body, maker);
+    const CubeGrid grid = place_grid(solid, body);
+    const std::vector<FilledCube> cubes = fill_cubes(grid, solid, regions);
+    if (cubes.empty())
+        throw assets::Error(
+            assets::ErrorKind::Input,
+            fmt::format("body \"{}\" fills no domain of {:g} m: use a smaller domain_size",
+                        body.name,
+                        body.domain_size),
+            "body." + body.name + ".domain_size");
+    const RegionTally tally = tally_regions(cubes, body.regions.size());
+    require_each_region(body, tally, cubes, grid, solid, regions);
+
+    Lattice lattice;
+    lattice.edge = grid.edge;
+    lattice.origin = grid.origin;
+    set_domains(cubes, body.regions, lattice);
+    set_corners(grid.n, lattice);
+    set_corner_shares(grid, solid, lattice);
+    const double sample_volume = grid.edge * grid.edge * grid.edge / samples_per_cube;
+    for (std::size_t r = 0; r < body.regions.size(); ++r) {
+        lattice.region_volume.push_back(static_cast<double>(tally.samples[r]) * sample_volume);
+        lattice.region_mass.push_back(lattice.region_volume[r] * body.regions[r].density);
+    }
+    if (repairs) {
+        repairs->insert(repairs->end(), maker.repairs().begin(), maker.repairs().end());
+        note_thin_regions(body, tally, *repairs);
+    }
+    return lattice;
+}
+
+std::vector<int> select_corners(const Lattice& lattice,
+                                const Body& body,
+                                const Selector& select) {
+    LevelMaker maker(body);
+    const Level level = maker.make(select);
+    std::vector<int> selected;
+    for (int c = 0; c < lattice.n_corners(); ++c)
+        if (level(lattice.corner_rest[c]) <= selection_tolerance * lattice.edge)
+            selected.push_back(c);
+    if (!selected.empty())
+        return selected;
+    Vec3 min = lattice.corner_rest.front(), max = min;
+    for (const Vec3& X : lattice.corner_rest) {
+        min = min.cwiseMin(X);
+        max = max.cwiseMax(X);
+    }
+    throw assets::Error(assets::ErrorKind::Input,
+                        fmt::format("selects no corner of body \"{}\", whose corners span "
+                                    "[{:g}, {:g}, {:g}] to [{:g}, {:g}, {:g}] m",
+                                    body.name,
+                                    min.x(),
+                                    min.y(),
+                                    min.z(),
+                                    max.x(),
+                                    max.y(),
+                                    max.z()),
+                        select.key);
+}
+
+double lame_lambda(double young_modulus, double poisson_ratio) {
+    return young_modulus * poisson_ratio / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio));
+}
+
+double lame_mu(double young_modulus, double poisson_ratio) {
+    return young_modulus / (2 * (1 + poisson_ratio));
+}
+
+}  // namespace sim
