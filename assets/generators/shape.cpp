@@ -75,7 +75,8 @@ double support_of(const Capsule& capsule, const Vec3& direction) {
 }
 
 double support_of(const Torus& torus, const Vec3& direction) {
-    return direction.dot(torus.center) + torus.major * across(direction, torus.axis.normalized())
+    return direction.dot(torus.center)
+           + torus.major * across(direction, torus.axis.normalized())
            + torus.minor * direction.norm();
 }
 
@@ -83,7 +84,8 @@ double support_of(const Torus& torus, const Vec3& direction) {
 
 Mat3 rotation(const Transform& transform) {
     const Vec3& angle = transform.rotate;
-    return (Eigen::AngleAxisd(angle.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angle.y(), Vec3::UnitY())
+    return (Eigen::AngleAxisd(angle.z(), Vec3::UnitZ())
+            * Eigen::AngleAxisd(angle.y(), Vec3::UnitY())
             * Eigen::AngleAxisd(angle.x(), Vec3::UnitX()))
         .toRotationMatrix();
 }

@@ -45,7 +45,7 @@ int CellIndex::nearest(const Vec3& point) const {
     const int last_ring = std::max({n_[0], n_[1], n_[2]});
     for (int ring = 0; ring <= last_ring; ++ring) {
         // Cells of this ring are at least ring - 1 edges away.
-        if (nearest.domain >= 0 && ring > 1 && (ring - 1.0) * (ring - 1.0) > nearest.squared)
+        if (nearest.domain >= 0 && (ring - 1.0) * (ring - 1.0) > nearest.squared)
             break;
         visit_ring(center, ring, point, nearest);
         if (nearest.domain >= 0 && nearest.squared == 0)

@@ -1,0 +1,116 @@
+#include "assets/generators/solid.h"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <random>
+
+using namespace assets;
+
+namespace {
+
+constexpr double rounding = 1e-12;  // of shapes of about a metre
+
+const std::vector<Shape> shapes = {Box{{-1, 0.5, 0}, {0.5, 2, 0.25}},
+                                   Sphere{{0.3, -0.2, 0.1}, 0.7},
+                                   Cylinder{{0, 0, 0}, {1, 2, 0.5}, 0.4},
+                                   Capsule{{0.2, 0, 0}, {0.2, -1, 1}, 0.3},
+                                   Torus{{0, 0.1, 0}, {1, 1, 3}, 0.8, 0.25}};
+
+Vec3 random_point(std::mt19937& random) {
+    std::uniform_real_distribution<double> coordinate(-2.5, 2.5);
+    return {coordinate(random), coordinate(random), coordinate(random)};
+}
+
+Vec3 gradient(const Shape& shape, const Vec3& x) {
+    constexpr double h = 1e-6;
+    Vec3 g;
+    for (int i = 0; i < 3; ++i)
+        g[i] = (signed_distance(shape, x + h * Vec3::Unit(i))
+                - signed_distance(shape, x - h * Vec3::Unit(i)))
+               / (2 * h);
+    return g;
+}
+
+}  // namespace
+
+TEST_CASE("signed distances at points where they are known") {
+    CHECK(signed_distance(Box{{0, 0, 0}, {2, 2, 2}}, {1, 1, 0.25}) == Approx(-0.25));
+    CHECK(signed_distance(Box{{0, 0, 0}, {2, 2, 2}}, {5, 6, 1}) == Approx(5));
+    CHECK(signed_distance(Sphere{{1, 0, 0}, 2}, {1, 0, 5}) == Approx(3));
+    const Cylinder cylinder{{0, 0, 0}, {0, 0, 4}, 1};
+    CHECK(signed_distance(cylinder, {0, 0.75, 2}) == Approx(-0.25));
+    CHECK(signed_distance(cylinder, {0, 0, 3.5}) == Approx(-0.5));
+    CHECK(signed_distance(cylinder, {0, 4, 8}) == Approx(5));
+    CHECK(signed_distance(Capsule{{0, 0, 0}, {0, 0, 4}, 1}, {0, 3, 8}) == Approx(4));
+    CHECK(signed_distance(Capsule{{0, 0, 0}, {0, 0, 0}, 1}, {0, 3, 0}) == Approx(2));
+    CHECK(signed_distance(Torus{{0, 0, 0}, {0, 0, 2}, 2, 0.5}, {2, 0, 0}) == Approx(-0.5));
+    CHECK(signed_distance(Torus{{0, 0, 0}, {0, 0, 2}, 2, 0.5}, {0, 0, 0}) == Approx(1.5));
+}
+
+TEST_CASE("a signed distance leads to the surface along its gradient") {
+    std::mt19937 random(1);
+    for (const Shape& shape : shapes)
+        for (int i = 0; i < 200; ++i) {
+            const Vec3 x = random_point(random);
+            const double distance = signed_distance(shape, x);
+            if (distance < 0.01)  // inside, gradients jump at the medial surface
+                continue;
+            const Vec3 on_surface = x - distance * gradient(shape, x);
+            CHECK(std::abs(signed_distance(shape, on_surface))
+                  < 1e-7);  // rounding / step of the gradient
+        }
+}
+
+TEST_CASE("the support function bounds the points inside, tightly") {
+    std::mt19937 random(2);
+    for (const Shape& shape : shapes) {
+        const Vec3 direction = random_point(random).normalized();
+        const double bound = support(shape, direction);
+        for (int i = 0; i < 2000; ++i) {
+            const Vec3 x = random_point(random);
+            if (signed_distance(shape, x) <= 0)
+                CHECK(direction.dot(x) <= bound + rounding);
+        }
+        // A plane just beyond the bound misses the shape, one through it touches: seen from far away along the
+        // direction, the distance to the shape's plane is the distance to the shape plus the sagitta.
+        double nearest = 1e9;
+        for (int i = 0; i < 40000; ++i) {
+            const Vec3 x = random_point(random);
+            const Vec3 on_plane = x - (direction.dot(x) - bound) * direction;
+            nearest = std::min(nearest, signed_distance(shape, on_plane));
+        }
+        CHECK(nearest > -rounding);
+        CHECK(nearest < 0.01);  // the closest of 40000 points in a square of 5 m
+    }
+}
+
+TEST_CASE("transforms scale, rotate about x, y, z in this order, and translate") {
+    const double right_angle = std::acos(0.0);
+    const Transform transform{2, {right_angle, 0, right_angle}, {1, 2, 3}};
+    // y -> (about x) z -> (about z) z; scaled by 2
+    CHECK((apply(transform, {0, 1, 0}) - Vec3(1, 2, 5)).norm() < rounding);
+    // z -> (about x) -y -> (about z) x
+    CHECK((apply(transform, {0, 0, 1}) - Vec3(3, 2, 3)).norm() < rounding);
+    CHECK((apply_inverse(transform, apply(transform, {0.1, 0.2, 0.3})) - Vec3(0.1, 0.2, 0.3))
+              .norm()
+          < rounding);
+}
+
+TEST_CASE("the solid of a moved shape has moved distances and exact bounds") {
+    const double eighth_turn = std::acos(0.0) / 2;
+    const auto solid = make_solid(
+        {Shape(Box{{-1, -1, -1}, {1, 1, 1}}), {3, {0, 0, eighth_turn}, {10, 0, 0}}}, 0.1, 1);
+    const double half_diagonal = 3 * std::sqrt(2.0);
+    CHECK((solid->min - Vec3(10 - half_diagonal, -half_diagonal, -3)).norm() < 10 * rounding);
+    CHECK((solid->max - Vec3(10 + half_diagonal, half_diagonal, 3)).norm() < 10 * rounding);
+    CHECK(solid->signed_distance({10, 0, 5}) == Approx(2));
+    CHECK(solid->signed_distance({10 + half_diagonal + 1, 0, 0}) == Approx(1));
+    CHECK(solid->signed_distance({10, 0, 0}) == Approx(-3));
+}
+
+TEST_CASE("a shape without volume is refused") {
+    CHECK_THROWS_WITH(make_solid({Shape(Sphere{{0, 0, 0}, 0}), {}}, 0.1, 1),
+                      Catch::Contains("no volume"));
+}
