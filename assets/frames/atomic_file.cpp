@@ -3,13 +3,14 @@
 #include "assets/base/error.h"
 #include "assets/frames/frame_cache.h"
 
+#include <cerrno>
 #include <fcntl.h>
 #include <fmt/core.h>
-#include <unistd.h>
-
-#include <cerrno>
+#include <optional>
 #include <string_view>
 #include <system_error>
+#include <unistd.h>
+#include <vector>
 
 namespace assets {
 namespace {
@@ -17,11 +18,12 @@ namespace {
 constexpr std::string_view temporary_mark = ".tmp.";
 
 [[noreturn]] void fail(const std::filesystem::path& path, int reason) {
-    throw Error(ErrorKind::Resources,
-                fmt::format("cannot write {}: {}; what was written before is intact, and the same "
-                            "command goes on from there",
-                            path.string(),
-                            std::generic_category().message(reason)));
+    throw Error(
+        ErrorKind::Resources,
+        fmt::format("cannot write {}: {}; what was written before is intact, and the same "
+                    "command goes on from there",
+                    path.string(),
+                    std::generic_category().message(reason)));
 }
 
 /// Repeats a system call that a signal cut short.
@@ -37,7 +39,8 @@ auto uninterrupted(Call call) {
 class Descriptor {
   public:
     Descriptor(const std::filesystem::path& path, int flags)
-        : value_(uninterrupted([&] { return ::open(path.c_str(), flags | O_CLOEXEC, 0666); })) {}
+        : value_(uninterrupted([&] { return ::open(path.c_str(), flags | O_CLOEXEC, 0666); })) {
+    }
 
     ~Descriptor() { close(); }
 
@@ -57,9 +60,9 @@ class Descriptor {
     int value_ = -1;
 };
 
-/// Writes and flushes a new file; returns 0 or the system's reason.
-int write_flushed(const std::filesystem::path& path, std::string_view bytes) {
-    Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC);
+/// Writes and flushes a file, anew (O_TRUNC) or at its end (O_APPEND); returns 0 or the system's reason.
+int write_flushed(const std::filesystem::path& path, std::string_view bytes, int where) {
+    Descriptor file(path, O_WRONLY | O_CREAT | where);
     if (file.value() < 0)
         return errno;
     while (!bytes.empty()) {
@@ -74,8 +77,7 @@ int write_flushed(const std::filesystem::path& path, std::string_view bytes) {
     return file.close() ? 0 : errno;
 }
 
-}  // namespace
-
+/// "stats.csv" for ".stats.csv.tmp.4711"; empty where `name` is no temporary name of ours.
 std::optional<std::string> name_of_temporary(const std::string& name) {
     const std::size_t mark = name.rfind(temporary_mark);
     if (mark == std::string::npos || mark < 2 || name.front() != '.')
@@ -84,6 +86,31 @@ std::optional<std::string> name_of_temporary(const std::string& name) {
     if (process.empty() || process.find_first_not_of("0123456789") != std::string::npos)
         return {};
     return name.substr(1, mark - 1);
+}
+
+}  // namespace
+
+void remove_files(const std::filesystem::path& folder,
+                  const std::function<bool(const std::string&)>& ours) {
+    std::vector<std::filesystem::path>
+        found;  // all names first: removing may disturb the listing
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (ours(entry.path().filename().string()))
+            found.push_back(entry.path());
+    for (const auto& path : found)
+        if (::unlink(path.c_str()) != 0 && errno != ENOENT)
+            throw Error(ErrorKind::Resources,
+                        fmt::format("cannot remove {}: {}",
+                                    path.string(),
+                                    std::generic_category().message(errno)));
+}
+
+void remove_temporaries(const std::filesystem::path& folder,
+                        const std::function<bool(const std::string&)>& ours) {
+    remove_files(folder, [&](const std::string& name) {
+        const auto final_name = name_of_temporary(name);
+        return final_name && ours(*final_name);
+    });
 }
 
 void sync_folder(const std::filesystem::path& folder) {
@@ -99,7 +126,7 @@ void write_atomically(const std::filesystem::path& path, const std::string& byte
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
     const std::filesystem::path temporary =
         folder / fmt::format(".{}{}{}", path.filename().string(), temporary_mark, ::getpid());
-    int reason = write_flushed(temporary, bytes);
+    int reason = write_flushed(temporary, bytes, O_TRUNC);
     if (reason == 0 && ::rename(temporary.c_str(), path.c_str()) != 0)
         reason = errno;
     if (reason != 0) {
@@ -107,6 +134,11 @@ void write_atomically(const std::filesystem::path& path, const std::string& byte
         fail(path, reason);
     }
     sync_folder(folder);
+}
+
+void append_flushed(const std::filesystem::path& path, const std::string& bytes) {
+    if (const int reason = write_flushed(path, bytes, O_APPEND); reason != 0)
+        fail(path, reason);
 }
 
 }  // namespace assets

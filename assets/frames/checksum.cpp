@@ -1,10 +1,9 @@
 #include "assets/frames/checksum.h"
 
-#include <fmt/core.h>
-
 #include <array>
 #include <cstddef>
 #include <cstring>
+#include <fmt/core.h>
 
 namespace assets {
 namespace {

@@ -16,9 +16,6 @@ std::string frame_name(int number);
 /// Whether a cache calls one of its files so.
 bool is_cache_file(const std::string& name);
 
-/// Removes temporary files that a killed process left.
-void remove_leftovers(const std::filesystem::path& folder);
-
 /// Removes all files of a cache, the manifest first: without it the others count for nothing.
 void remove_cache_files(const std::filesystem::path& folder);
 

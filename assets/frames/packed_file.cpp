@@ -3,14 +3,14 @@
 #include "assets/base/error.h"
 #include "assets/frames/checksum.h"
 
-#include <blosc.h>
-#include <fmt/core.h>
-
 #include <algorithm>
+#include <blosc.h>
 #include <cstddef>
 #include <cstring>
+#include <fmt/core.h>
 #include <fstream>
 #include <string_view>
+#include <system_error>
 
 namespace assets {
 namespace {
@@ -45,7 +45,8 @@ void append_piece(std::string& packed, std::string_view piece, std::size_t word_
 }
 
 std::uint64_t header_checksum(const FileHeader& header) {
-    return checksum({reinterpret_cast<const char*>(&header), offsetof(FileHeader, header_checksum)});
+    return checksum(
+        {reinterpret_cast<const char*>(&header), offsetof(FileHeader, header_checksum)});
 }
 
 FileHeader read_header(std::istream& file, const std::filesystem::path& path, FileKind kind) {
@@ -53,12 +54,13 @@ FileHeader read_header(std::istream& file, const std::filesystem::path& path, Fi
     if (!file.read(reinterpret_cast<char*>(&header), sizeof header) || header.magic != magic)
         report_damage(path, "does not begin like a file of a frame cache");
     if (header.version != version)
-        throw Error(ErrorKind::Input,
-                    fmt::format("{} has format version {}, this program reads {}; simulate again with "
-                                "--overwrite",
-                                path.string(),
-                                header.version,
-                                version));
+        throw Error(
+            ErrorKind::Input,
+            fmt::format("{} has format version {}, this program reads {}; simulate again with "
+                        "--overwrite",
+                        path.string(),
+                        header.version,
+                        version));
     if (header.header_checksum != header_checksum(header) || header.kind != kind)
         report_damage(path, "has a damaged header");
     return header;
@@ -67,8 +69,9 @@ FileHeader read_header(std::istream& file, const std::filesystem::path& path, Fi
 std::ifstream open(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file)
-        throw Error(ErrorKind::Failed,
-                    fmt::format("cannot read {}: it is missing; simulate again", path.string()));
+        throw Error(
+            ErrorKind::Failed,
+            fmt::format("cannot read {}: it is missing; simulate again", path.string()));
     return file;
 }
 
@@ -77,7 +80,9 @@ std::string read_packed(std::istream& file,
                         const std::filesystem::path& path,
                         const FileHeader& header) {
     // The file's own size decides before memory is asked for.
-    if (std::filesystem::file_size(path) != sizeof(FileHeader) + header.packed_bytes)
+    std::error_code unreadable;
+    if (std::filesystem::file_size(path, unreadable)
+        != sizeof(FileHeader) + header.packed_bytes)
         report_damage(path, "has the wrong length");
     std::string packed(header.packed_bytes, '\0');
     if (!file.read(packed.data(), static_cast<std::streamsize>(packed.size()))
@@ -89,14 +94,16 @@ std::string read_packed(std::istream& file,
 }  // namespace
 
 void report_damage(const std::filesystem::path& path, const std::string& what) {
-    throw Error(ErrorKind::Failed,
-                fmt::format("{} {}: it is damaged; remove it and simulate again", path.string(), what));
+    throw Error(
+        ErrorKind::Failed,
+        fmt::format("{} {}: it is damaged; remove it and simulate again", path.string(), what));
 }
 
 std::string pack(FileHeader header, const std::string& content) {
     std::string file(sizeof header, '\0');
     for (std::size_t at = 0; at < content.size(); at += piece_bytes)
-        append_piece(file, std::string_view(content).substr(at, piece_bytes), header.word_bytes);
+        append_piece(
+            file, std::string_view(content).substr(at, piece_bytes), header.word_bytes);
 
     header.magic = magic;
     header.version = version;
@@ -125,7 +132,8 @@ PackedFile unpack(const std::filesystem::path& path, FileKind kind) {
         std::memcpy(&size, packed.data() + from, sizeof size);
         from += sizeof size;
         const std::size_t expected = std::min(piece_bytes, result.content.size() - at);
-        const int n = blosc_decompress_ctx(packed.data() + from, result.content.data() + at, expected, 1);
+        const int n =
+            blosc_decompress_ctx(packed.data() + from, result.content.data() + at, expected, 1);
         if (n != static_cast<int>(expected))
             report_damage(path, "cannot be decompressed");
         from += size;

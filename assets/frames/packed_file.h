@@ -18,9 +18,9 @@ struct FileHeader {
     std::array<char, 8> magic{};
     std::uint32_t version = 0;
     FileKind kind = FileKind::Frame;
-    std::int32_t number = 0;             // of the frame
-    std::uint32_t word_bytes = 4;        // of the numbers inside: the compressor sorts bytes by it
-    double time = 0;                     // [s]
+    std::int32_t number = 0;       // of the frame
+    std::uint32_t word_bytes = 4;  // of the numbers inside: the compressor sorts bytes by it
+    double time = 0;               // [s]
     std::array<float, 3> low{}, high{};  // bounds [m]
     std::uint64_t content_bytes = 0;     // before compression
     std::uint64_t packed_bytes = 0;      // after it: the rest of the file
