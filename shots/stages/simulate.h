@@ -16,7 +16,7 @@ struct SimulateJob {
     std::vector<int> frames;          // consecutive, from the shot's first; at least one
     std::filesystem::path folder;     // the shot's output: out/SHOT
     assets::Fingerprint fingerprint;  // of everything that decides the frames
-    bool overwrite = false;           // discard what another fingerprint has left
+    bool overwrite = false;           // begin again, discarding what the folder holds
 };
 
 /// Where the frames of a shot lie in its output folder.

@@ -2,20 +2,21 @@
 
 #include "assets/base/error.h"
 
-#include <fmt/format.h>
-
 #include <charconv>
+#include <fmt/format.h>
 #include <set>
 
 namespace shots {
 namespace {
 
-constexpr int largest_number = 10'000'000;  // far beyond any shot, small enough to count without overflow
+constexpr int largest_number =
+    10'000'000;  // far beyond any shot, small enough to count without overflow
 
 [[noreturn]] void refuse(std::string_view text, const std::string& reason) {
     throw assets::Error(
         assets::ErrorKind::Input,
-        fmt::format("frames '{}': {}; allowed: \"12\", \"1-48\", \"1001-1100x2\"", text, reason));
+        fmt::format(
+            "frames '{}': {}; allowed: \"12\", \"1-48\", \"1001-1100x2\"", text, reason));
 }
 
 /// Reads an integer at the start of `rest` and drops it from there; false where there is none.
@@ -65,7 +66,8 @@ FrameRange parse_frame_range(std::string_view text) {
 std::vector<int> parse_frame_list(std::string_view text) {
     constexpr std::string_view separators = ", ";
     std::set<int> numbers;
-    for (std::size_t begin = 0; (begin = text.find_first_not_of(separators, begin)) != text.npos;) {
+    for (std::size_t begin = 0;
+         (begin = text.find_first_not_of(separators, begin)) != text.npos;) {
         const std::size_t end = std::min(text.find_first_of(separators, begin), text.size());
         for (const int number : parse_frame_range(text.substr(begin, end - begin)).numbers())
             numbers.insert(number);

@@ -1,0 +1,74 @@
+// What bodies touch: colliders and each other.
+#include "shots/reading/readers.h"
+
+namespace shots {
+namespace {
+
+/// A coefficient, "stick" or "slip".
+sim::Friction read_friction(TableReader& table) {
+    const Value* value = table.value("friction");
+    if (value == nullptr || !std::holds_alternative<std::string>(value->is))
+        return {false, table.number("friction", Dimension::Number, not_negative, 0.0)};
+    const bool stick =
+        table.choice<bool>("friction", {{"stick", true}, {"slip", false}}, {}, "slip");
+    return {stick, 0};
+}
+
+sim::PlaneShape read_plane(TableReader table) {
+    const sim::PlaneShape plane{table.vector("point", Dimension::Length),
+                                table.direction("normal")};
+    table.finish();
+    return plane;
+}
+
+void read_keys(TableReader& collider) {
+    for (TableReader& key : collider.tables("keys")) {
+        key.number("time", Dimension::Time, not_negative);
+        key.vector("translate", Dimension::Length, Vec3(Vec3::Zero()));
+        key.vector("rotate", Dimension::Angle, Vec3(Vec3::Zero()));
+        key.finish();
+    }
+    collider.not_available("keys");
+}
+
+sim::Collider read_collider(TableReader& table) {
+    sim::Collider collider;
+    const std::string word =
+        table.one_of({"plane", "sphere", "box", "cylinder", "capsule", "mesh"});
+    if (word == "plane") {
+        collider.shape = read_plane(table.table("plane"));
+    } else if (word == "sphere") {
+        collider.shape = std::get<assets::Sphere>(read_shape(table, word));
+    } else if (word == "box") {
+        collider.shape = std::get<assets::Box>(read_shape(table, word));
+    } else if (!word.empty()) {
+        if (word == "mesh")
+            table.file(word);
+        else
+            read_shape(table, word);
+        table.not_available(word);
+    }
+    collider.friction = read_friction(table);
+    read_keys(table);
+    table.finish();
+    return collider;
+}
+
+}  // namespace
+
+std::vector<sim::Collider> read_colliders(TableReader& root) {
+    std::vector<sim::Collider> colliders;
+    for (TableReader& table : root.tables("collider"))
+        colliders.push_back(read_collider(table));
+    return colliders;
+}
+
+sim::Friction read_contact(TableReader table) {
+    enum class Mode { Grid };
+    table.choice<Mode>("mode", {{"grid", Mode::Grid}}, {"surface"}, "grid");
+    const sim::Friction friction = read_friction(table);
+    table.finish();
+    return friction;
+}
+
+}  // namespace shots

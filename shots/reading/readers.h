@@ -1,0 +1,75 @@
+// One reader per table of the shot file's vocabulary. All follow TableReader: mistakes go into the report.
+#pragma once
+
+#include "assets/generators/shape.h"
+#include "render/options.h"
+#include "shots/reading/table_reader.h"
+#include "shots/text/frame_range.h"
+#include "sim/scene.h"
+
+#include <string>
+#include <vector>
+
+namespace shots {
+
+/// [solver]
+sim::SolverOptions read_solver(TableReader table);
+
+/// The words that name a shape: box, sphere, cylinder, capsule, torus.
+const std::vector<std::string>& shape_words();
+
+/// { center, radius } and the like, standing in `owner` under one of shape_words().
+assets::Shape read_shape(TableReader& owner, const std::string& word);
+
+/// shape = {...} or mesh = "file", and transform = {...}, in the table of a body.
+assets::Source read_body_source(TableReader& body);
+
+/// source = "self" (empty) | {shape or mesh}, or mesh = "file"; and transform = {...}, in the table of a skin.
+std::optional<assets::Source> read_skin_source(TableReader& skin);
+
+/// { scale, rotate, translate }
+assets::Transform read_transform(TableReader table);
+
+/// The selector that stands in `owner` under `name`. Required.
+sim::Selector read_selector(TableReader& owner, const std::string& name);
+
+/// All [[body.NAME.region]], each inheriting from the one before what it leaves out.
+std::vector<sim::Region> read_regions(TableReader& body);
+
+/// Looks by the names of body and skin.
+using Looks = std::map<std::pair<std::string, std::string>, render::Look>;
+
+/// All [body.NAME]; the looks of their skins go into `looks`. A body without a skin gets one named "self".
+std::vector<sim::Body> read_bodies(TableReader& root, Looks& looks);
+
+/// Reports a body whose rest shape reaches outside the world, a box of ±1000 m, or has more domains than memory
+/// could hold; and mesh files that cannot be read.
+void check_extent(TableReader& table, const sim::Body& body);
+
+/// All [[pin]], of known bodies.
+std::vector<sim::Pin> read_pins(TableReader& root, const std::vector<sim::Body>& bodies);
+
+/// All [[force]].
+std::vector<sim::Force> read_forces(TableReader& root, const std::vector<sim::Body>& bodies);
+
+/// All [[probe]].
+std::vector<sim::Probe> read_probes(TableReader& root, const std::vector<sim::Body>& bodies);
+
+/// All [[collider]].
+std::vector<sim::Collider> read_colliders(TableReader& root);
+
+/// [contact]
+sim::Friction read_contact(TableReader table);
+
+/// frames = "1-48"
+FrameRange read_frames(TableReader& root);
+
+/// units, [camera], [light] and [output]; the colliders become props.
+void read_picture(TableReader& root,
+                  const std::vector<sim::Collider>& colliders,
+                  render::Options& picture);
+
+/// output.path with the shot's name for "{shot}".
+std::filesystem::path read_output_folder(TableReader& root, const std::string& shot_name);
+
+}  // namespace shots

@@ -1,0 +1,11 @@
+# Fails unless each line of FILE is a JSON object.
+file(STRINGS ${FILE} lines)
+if(NOT lines)
+  message(FATAL_ERROR "${FILE} is empty")
+endif()
+foreach(line IN LISTS lines)
+  string(JSON type TYPE "${line}")
+  if(NOT type STREQUAL "OBJECT")
+    message(FATAL_ERROR "no JSON object: ${line}")
+  endif()
+endforeach()

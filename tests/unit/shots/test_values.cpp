@@ -1,0 +1,122 @@
+// What stands in a shot file arrives in the scene.
+#include <catch2/catch.hpp>
+
+#include "shot_text.h"
+#include <fstream>
+#include <iterator>
+#include <numbers>
+
+using namespace shots;
+
+namespace {
+
+std::string vocabulary() {
+    std::ifstream stream(SOURCE_ROOT "/tests/unit/shots/data/vocabulary.toml");
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace
+
+TEST_CASE("the whole vocabulary is read") {
+    const Shot shot = load_text(vocabulary());
+    CHECK(shot.name == "example");
+    CHECK(shot.frames.last == 48);
+    CHECK(shot.render.up == Vec3::UnitZ());
+    CHECK(shot.output == "out/example");
+    CHECK(shot.time_of(25) == 1.0);
+    CHECK(shot.warnings.empty());
+
+    const sim::Scene& scene = shot.scene;
+    CHECK(scene.solver.method == sim::Method::Enriched);
+    CHECK(scene.solver.steps == sim::Steps::Implicit);
+    CHECK(scene.solver.dt == 0.001);
+    REQUIRE(scene.bodies.size() == 1);
+    const sim::Body& bar = scene.bodies.front();
+    CHECK(std::get<assets::Box>(std::get<assets::Shape>(bar.source.geometry)).max
+          == Vec3(0.45, 0.075, 0.075));
+    REQUIRE(bar.regions.size() == 2);
+    CHECK(bar.regions[1].young_modulus == 100e3);
+    CHECK(bar.regions[1].poisson_ratio == 0.3);  // inherited
+    CHECK(std::get<assets::Box>(bar.regions[1].select.is).min.x() == 0.15);
+    REQUIRE(bar.skins.size() == 1);
+    CHECK_FALSE(bar.skins.front().source);
+    CHECK(shot.render.looks.at({"bar", "outside"}).color_by == render::ColorBy::Look);
+
+    CHECK(std::holds_alternative<sim::Selector::HalfSpace>(scene.pins.at(0).select.is));
+    CHECK(std::get<sim::Gravity>(scene.forces.at(0)).acceleration == Vec3(0, 0, -10));
+    CHECK(std::get<sim::DeadLoad>(scene.forces.at(1)).body == "bar");
+    CHECK(scene.colliders.at(0).friction.coefficient == 0.4);
+    CHECK(shot.render.props.at(0).point == Vec3(0, 0, -0.6));
+    CHECK(scene.contact.coefficient == 0.3);
+    CHECK(std::get<std::string>(scene.probes.at(1).at) == "soft");
+    CHECK(shot.render.samples == 64);
+}
+
+TEST_CASE("the alternatives of the vocabulary are read") {
+    constexpr double pi = std::numbers::pi;
+    std::string text =
+        with(sound_shot(),
+             "shape = { box = { min = [0, 0, 0], max = [1, 0.1, 0.1] } }",
+             "shape = { torus = { center = [0, 0, 0], axis = [0, 0, 2], major = 0.5, minor = "
+             "\"10 cm\" } }\n"
+             "transform = { scale = 2.0, rotate = [0, 0, \"30 deg\"], translate = [0, 0, 1] }\n"
+             "velocity = [1, 0, 0]\nspin = [0, 0, \"90 deg/s\"]");
+    text =
+        with(text,
+             "select = { box = { min = [0.4, -1, -1], max = [0.6, 1, 1] } }",
+             "select = { all_of = [{ not = { sphere = { center = [0, 0, 0], radius = 1 } } }, "
+             "{ any_of = [\"all\", { depth = 0.002 }, { mesh_material = \"Muscle*\" }] }] }");
+    text = with(text,
+                "normal = [1, 0, 0] } }",
+                "normal = [1, 0, 0] } }\nspin = { axis = [0, 0, 1], point = [0, 0, 0], rate = "
+                "\"90 deg/s\" }\n"
+                "until = \"500 ms\"\nonly = [\"z\"]");
+    text = with(
+        text,
+        "[output]",
+        "[[collider]]\nsphere = { center = [0, 0, -1], radius = 0.5 }\nfriction = \"stick\"\n"
+        "[[body.bar.skin]]\nname = \"core\"\nsource = { sphere = { center = [0, 0, 0], radius "
+        "= 1 } }\n"
+        "look = { color_by = \"stretch\", opacity = 0.5 }\n"
+        "[camera]\nposition = [1, 2, 3]\nlook_at = [0, 0, 0]\nlens = \"3.5 cm\"\n[output]");
+    const Shot shot = load_text(text);
+    const sim::Body& body = shot.scene.bodies.front();
+    CHECK(std::get<assets::Torus>(std::get<assets::Shape>(body.source.geometry)).minor == 0.1);
+    CHECK(body.source.transform.rotate.z() == Approx(pi / 6));
+    CHECK(body.spin.z() == Approx(pi / 2));
+    const auto& all_of = std::get<sim::Selector::AllOf>(body.regions[1].select.is).of;
+    REQUIRE(all_of.size() == 2);
+    CHECK(std::get<sim::Selector::Not>(all_of[0].is).of.size() == 1);
+    CHECK(std::get<sim::Selector::AnyOf>(all_of[1].is).of.size() == 3);
+    CHECK(all_of[1].key == "body.bar.region.soft.select.all_of.1");
+    const sim::Pin& pin = shot.scene.pins.front();
+    CHECK(std::get<sim::Pin::Spin>(pin.moves).rate == Approx(pi / 2));
+    CHECK(pin.until == 0.5);
+    CHECK(pin.only == std::array{false, false, true});
+    CHECK(shot.scene.colliders.front().friction.stick);
+    CHECK(body.skins.front().source.has_value());
+    CHECK(shot.render.looks.at({"bar", "core"}).color_by == render::ColorBy::Stretch);
+    CHECK_FALSE(shot.render.camera.frame_bodies);
+    CHECK(shot.render.camera.lens == 35);
+}
+
+TEST_CASE("the shots that ship are sound") {
+    const std::string shots = SOURCE_ROOT "/shots/";
+    CHECK(load_shot(shots + "bar.toml").warnings.empty());
+    const Shot two_balls = load_shot(shots + "two_balls.toml");
+    CHECK(two_balls.warnings.empty());
+    CHECK(two_balls.scene.bodies.front().skins.size() == 3);
+}
+
+TEST_CASE("bodies keep the order of the file") {
+    const Shot shot = load_text(
+        with(sound_shot(),
+             "[[pin]]",
+             "[body.a]\nshape = { sphere = { center = [0, 0, 3], radius = 1 } }\n"
+             "domain_size = 0.1\n[[body.a.region]]\nname = \"all\"\nselect = \"all\"\n"
+             "young_modulus = 1e5\npoisson_ratio = 0.3\ndensity = 1000\n[[pin]]"));
+    REQUIRE(shot.scene.bodies.size() == 2);
+    CHECK(shot.scene.bodies[0].name == "bar");
+    CHECK(shot.scene.bodies[1].name == "a");
+    CHECK(shot.scene.bodies[1].skins.front().name == "self");
+}
