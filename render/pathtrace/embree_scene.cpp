@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -98,8 +99,7 @@ EmbreeScene::EmbreeScene(const Scene& scene)
     : scene_(scene),
       device_(nullptr, rtcReleaseDevice),
       accelerator_(nullptr, rtcReleaseScene) {
-    // One thread builds: the order of triangles in the tree, and so which of two at an edge is hit, never changes.
-    device_.reset(rtcNewDevice("threads=1"));
+    device_.reset(rtcNewDevice(nullptr));
     if (!device_)
         raise({rtcGetDeviceError(nullptr), "no device"});
     Fault fault;
@@ -111,7 +111,10 @@ EmbreeScene::EmbreeScene(const Scene& scene)
         attach(m);
         raise(fault);
     }
-    rtcCommitScene(accelerator_.get());
+    // One thread builds: the order of triangles in the tree, and so which of two at an edge is hit, never changes. An
+    // arena of one says so for the build alone; the device's own limit would bind all of TBB.
+    tbb::task_arena builder(1);
+    builder.execute([&] { rtcJoinCommitScene(accelerator_.get()); });
     raise(fault);
     rtcSetDeviceErrorFunction(device_.get(), nullptr, nullptr);
 }
