@@ -10,7 +10,7 @@ namespace sim {
 namespace {
 
 constexpr int chunk = 8192;
-constexpr double rounding = 1e-15;  // a few units in the last place
+constexpr double rounding = 1e-14;  // of a position after the sums of a step, relative to the largest coordinate
 
 }  // namespace
 
