@@ -66,6 +66,7 @@ void CornerMap::rebuild_body(const Field& corners, const BodyRange& body, int in
     // The box of cells that holds all slaved corners.
     const double inverse_size = 1 / body.cell_size;
     CellBox box;
+    Vec3p sum{};  // not finite where a corner is not: comparisons alone would pass over it
     bool any = false;
     slave_order_.clear();
     for (int c = body.begin; c < body.end; ++c) {
@@ -77,12 +78,13 @@ void CornerMap::rebuild_body(const Field& corners, const BodyRange& body, int in
         any = true;
         box.low = cell < box.low ? cell : box.low;
         box.high = cell > box.high ? cell : box.high;
+        sum += cell;
         slave_order_.push_back(c);
     }
     if (!any)
         return;
     const Vec3p extent = box.high - box.low + 1.0;
-    if (!(extent[0] * extent[1] * extent[2] < most_cells))
+    if (!(extent[0] * extent[1] * extent[2] < most_cells) || !std::isfinite(sum[0] + sum[1] + sum[2]))
         throw assets::Error(assets::ErrorKind::Diverged,
                             "a body spreads over more background cells than can be held; it has flown apart");
 
