@@ -16,7 +16,7 @@ namespace sim {
 ///
 /// with Φ = elastic + hourglass + collider energies, M lumped on q, and q~ the velocity after transfer, external forces
 /// and damping. Statics is the same with M = 0, dt = 1 (q is then a displacement) and the external forces in Φ:
-/// W(u) = Φ(x_n + T u) - f·(x_n + T u).   [design.md §1]
+/// W(u) = Φ(x_n + T u) - f·(x_n + T u).  
 class IncrementalPotential : public Potential {
   public:
     /// The bodies' energies and their ranges in the field of all corners.

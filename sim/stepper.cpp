@@ -16,7 +16,7 @@ namespace {
 constexpr int chunk = 8192;
 
 // The share of PIC is a rate: exp(-pic_rate dt) of the difference between a corner's velocity and the grid's is kept
-// per step, so that halving dt does not drain more (the paper keeps 0.95 per step). [design.md §1]
+// per step, so that halving dt does not drain more (the paper keeps 0.95 per step).
 constexpr double pic_rate = 5;  // [1/s]
 
 constexpr double dynamic_tolerance = 1e-3;  // of the inner forces of the step

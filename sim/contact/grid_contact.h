@@ -1,4 +1,4 @@
-// Contact between bodies on a background grid: an exchange of momentum after the solve. [design.md §4]
+// Contact between bodies on a background grid: an exchange of momentum after the solve.
 #pragma once
 
 #include "sim/base/field.h"

@@ -15,7 +15,7 @@ namespace sim {
 ///   E_hg = Σ_p eps mu_p V_p/8 Σ_g |F_g - F_p|²   over the eight Gauss points g,
 ///
 /// which vanishes on affine motion and is quadratic in x. In the modes h_m of a domain it is diagonal:
-/// eps mu V / (24 s²) (Σ bilinear h_m² + 1/2 trilinear h_m²). [materials.md §6]
+/// eps mu V / (24 s²) (Σ bilinear h_m² + 1/2 trilinear h_m²).
 /// eps = (1+nu)/2 gives a domain bent along a lattice axis its exact stiffness E I, as incompatible modes would: the
 /// mode u_x = ξζ stores eps mu 2/3, the beam E/6.
 ///
