@@ -189,6 +189,7 @@ void Stepper::move(State& state, double dt) {
                          dt,
                          scene_.contact,
                          contact_velocity);
+        see_on_grid(u, contact_velocity);
     }
     set_reactions(state, dt);
 
@@ -215,24 +216,39 @@ void Stepper::move(State& state, double dt) {
 }
 
 void Stepper::balance_momentum(const State& state, double dt, Field& u) const {
-    // The solve is inexact. The momentum of a body that nothing holds is known without it: inner forces sum to zero.
+    // The solve is inexact. The momentum of a body that nothing holds is known without it: elastic forces sum to zero,
+    // and what colliders give is in the gradient.
     const double damped = 1 + scene_.solver.damping * dt;
     for (const AssembledBody& body : assembly_.bodies) {
         const bool held = std::any_of(prescribed_.corners.begin(), prescribed_.corners.end(), [&](int c) {
             return c >= body.begin && c < body.end;
         });
-        if (held || colliders_.touches(potential_.positions(), body.begin, body.end))
+        if (held)
             continue;
         Vec3p missing{};
         double mass = 0;
         for (int c = body.begin; c < body.end; ++c) {
-            const Vec3p due = (assembly_.mass[c] * state.v[c] + dt * assembly_.force[c]) / damped;
-            missing += due - assembly_.mass[c] * u[c];
+            const Vec3p force = assembly_.force[c] - potential_.corner_gradient()[c];
+            missing += (assembly_.mass[c] * state.v[c] + dt * force) / damped - assembly_.mass[c] * u[c];
             mass += assembly_.mass[c][0];
         }
         for (int c = body.begin; c < body.end; ++c)
             u[c] += missing / mass;
     }
+}
+
+void Stepper::see_on_grid(const Field& u, Field& contact_velocity) const {
+    // A slaved corner can only move as its grid does. Were it given more, the next step would not know of it, ask for
+    // the same again, and pile up speed: so contact's change goes through the map, T M⁻¹ Tᵀ m, free corners as it is.
+    Field change(u.size()), dofs(map_.n_dofs());
+    for (std::size_t c = 0; c < u.size(); ++c)
+        change[c] = assembly_.mass[c] * (contact_velocity[c] - u[c]);
+    map_.apply_transposed(change, dofs);
+    for (int i = 0; i < map_.n_dofs(); ++i)
+        dofs[i] *= inverse_mass_[i];
+    map_.apply(dofs, change);
+    for (std::size_t c = 0; c < u.size(); ++c)
+        contact_velocity[c] = u[c] + change[c];
 }
 
 void Stepper::set_reactions(const State& state, double dt) {

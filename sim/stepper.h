@@ -61,6 +61,7 @@ class Stepper {
     void guess(const State& state, double dt);
     void move(State& state, double dt);
     void balance_momentum(const State& state, double dt, Field& u) const;
+    void see_on_grid(const Field& u, Field& contact_velocity) const;
     void set_reactions(const State& state, double dt);
     bool try_equilibrium(State& state, double time_begin, double time_end, NewtonSummary& summary);
     [[noreturn]] void fail(const State& state, double dt, const NewtonSummary& summary);

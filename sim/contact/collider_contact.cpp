@@ -104,13 +104,6 @@ double ColliderContact::add_gradient(const Field& x, Field& gradient) const {
     return energy;
 }
 
-bool ColliderContact::touches(const Field& x, int begin, int end) const {
-    bool any = false;
-    if (!empty())
-        for_touching(x, [&](const Touch& touch, std::size_t) { any |= touch.corner >= begin && touch.corner < end; });
-    return any;
-}
-
 void ColliderContact::linearize(const Field& x) {
     blocks_.clear();
     if (empty())

@@ -35,9 +35,6 @@ class ColliderContact {
     /// Adds ∂/∂x to `gradient` (#C) [N] and returns the energy [J]. Friction is left out where dt is 0 (statics).
     double add_gradient(const Field& x, Field& gradient) const;
 
-    /// Whether a corner in [begin, end) touches a collider at x.
-    bool touches(const Field& x, int begin, int end) const;
-
     /// Keeps the 3×3 Hessians of the corners that touch at x.
     void linearize(const Field& x);
 

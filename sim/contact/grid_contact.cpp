@@ -26,7 +26,7 @@ struct Stencil {
 /// One body's share of a node.
 struct Side {
     double mass = 0;
-    Vec3 momentum{0, 0, 0}, mass_gradient{0, 0, 0};
+    Vec3 momentum{0, 0, 0}, weight_gradient{0, 0, 0};
     double reach = -std::numeric_limits<double>::infinity();  // largest distance along the outward normal
 };
 
@@ -136,17 +136,17 @@ class PairGrid {
                     const double share = stencils_[s][k].weight[a] * mass;
                     side.mass += share;
                     side.momentum += share * unpadded(velocity[c]);
-                    side.mass_gradient += mass * stencils_[s][k].gradient[a];
+                    side.weight_gradient += mass * stencils_[s][k].gradient[a];
                 }
             }
     }
 
-    /// From the first body to the second: mass grows towards the inside of a body.
+    /// From the first body to the second. A weight grows as its corner nears the node: on the whole out of the body.
     static Vec3 normal(const Node& node) {
         const auto& [a, b] = node.side;
         if (a.mass <= 0 || b.mass <= 0)
             return Vec3::Zero();
-        const Vec3 n = b.mass_gradient / b.mass - a.mass_gradient / a.mass;
+        const Vec3 n = a.weight_gradient / a.mass - b.weight_gradient / b.mass;
         const double length = n.norm();
         return length > 0 ? Vec3(n / length) : Vec3::Zero();
     }
