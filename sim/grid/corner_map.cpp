@@ -183,6 +183,7 @@ void CornerMap::gather(const Field& f, Field& q) const {
             Vec3p sum[8] = {};
             for (int s = cells_[k].begin; s < cells_[k].end; ++s) {
                 const Vec3p value = f[slave_corner_[s]];
+#pragma GCC unroll 8  // the eight sums live in registers
                 for (int a = 0; a < 8; ++a) {
                     const double w = slave_weights_[s][a];
                     sum[a] += (squared ? w * w : w) * value;
