@@ -10,7 +10,8 @@ namespace sim {
 
 namespace {
 
-constexpr double contact_stiffness = 20;  // k / (E s): depth below 1e-3 s under 2% of E as pressure
+constexpr double contact_stiffness =
+    20;  // k / (E s): depth below 1e-3 s under 2% of E as pressure
 
 /// Young's modulus of a domain's mixture.   [Pa]
 double young_modulus(const Lattice& lattice, int p) {
@@ -30,7 +31,10 @@ Vec3 centre_of_mass(const Lattice& lattice) {
 
 }  // namespace
 
-AssembledBody::AssembledBody(const Body& body, Lattice made, int first_corner, double grid_ratio)
+AssembledBody::AssembledBody(const Body& body,
+                             Lattice made,
+                             int first_corner,
+                             double grid_ratio)
     : lattice(std::move(made)),
       begin(first_corner),
       end(first_corner + lattice.n_corners()),
@@ -69,7 +73,8 @@ Assembly::Assembly(const Scene& scene) {
         if (const auto* region = std::get_if<std::string>(&probe.at))
             assembled.region = index_of(scene.bodies[assembled.body].regions, *region);
         else
-            assembled.point = bind_points(bodies[assembled.body].lattice, {std::get<Vec3>(probe.at)})[0];
+            assembled.point =
+                bind_points(bodies[assembled.body].lattice, {std::get<Vec3>(probe.at)})[0];
         probes.push_back(assembled);
     }
 }
@@ -104,7 +109,9 @@ void Assembly::add_force(const Scene& scene, const DeadLoad& load) {
 
 int Assembly::body_of(int corner) const {
     const auto after = std::upper_bound(
-        bodies.begin(), bodies.end(), corner, [](int c, const AssembledBody& body) { return c < body.begin; });
+        bodies.begin(), bodies.end(), corner, [](int c, const AssembledBody& body) {
+            return c < body.begin;
+        });
     return static_cast<int>(after - bodies.begin()) - 1;
 }
 

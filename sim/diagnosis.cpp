@@ -1,9 +1,8 @@
 #include "sim/diagnosis.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace sim {
 
@@ -34,18 +33,26 @@ Worst most_compressed(Assembly& assembly, const Field& x) {
 
 std::string cause(const Scene& scene, const NewtonSummary& summary, double dt, double J) {
     if (dt == 0 && scene.pins.empty())
-        return "nothing holds the body, so there is no equilibrium; pin it, or use steps = \"implicit\"";
+        return "nothing holds the body, so there is no equilibrium; pin it, or use steps = "
+               "\"implicit\"";
     if (scene.solver.steps == Steps::SemiImplicit)
-        return fmt::format("one linearised solve is not enough for such a motion in a step of {:g} s; "
-                           "try --set solver.steps=implicit, or a smaller solver.dt",
-                           dt);
+        return fmt::format(
+            "one linearised solve is not enough for such a motion in a step of {:g} s; "
+            "try --set solver.steps=implicit, or a smaller solver.dt",
+            dt);
     if (summary.termination == Termination::NotFinite || J <= 0)
-        return dt > 0 ? fmt::format("pins or speeds squash domains flat within one step; try --set solver.dt={:g}",
-                                    dt / 4)
-                      : std::string("the pins move too far between two frames; use more frames, or move them less");
-    return dt > 0 ? fmt::format("the step is too long for the motion; try --set solver.dt={:g}", dt / 4)
-                  : std::string("the load is more than the body can carry in equilibrium, or it buckles; "
-                                "try a smaller load, or steps = \"implicit\" with damping");
+        return dt > 0 ? fmt::format(
+                   "pins or speeds squash domains flat within one step; try --set "
+                   "solver.dt={:g}",
+                   dt / 4)
+                      : std::string(
+                          "the pins move too far between two frames; use more frames, or move "
+                          "them less");
+    return dt > 0 ? fmt::format("the step is too long for the motion; try --set solver.dt={:g}",
+                                dt / 4)
+                  : std::string(
+                      "the load is more than the body can carry in equilibrium, or it buckles; "
+                      "try a smaller load, or steps = \"implicit\" with damping");
 }
 
 }  // namespace
@@ -56,12 +63,16 @@ assets::Error diagnose(const Scene& scene,
                        const Field& trial,
                        double dt,
                        const NewtonSummary& summary) {
-    const Worst worst = most_compressed(assembly, trial.size() == state.x.size() ? trial : state.x);
+    const Worst worst =
+        most_compressed(assembly, trial.size() == state.x.size() ? trial : state.x);
     const Body& body = scene.bodies[worst.body];
-    const Region& region = body.regions[assembly.bodies[worst.body].lattice.region[worst.domain]];
+    const Region& region =
+        body.regions[assembly.bodies[worst.body].lattice.region[worst.domain]];
     return {assets::ErrorKind::Diverged,
-            fmt::format("no solution {} {:.6g} s: {} (residual {:.2g} after {} Newton and {} CG iterations).\n"
-                        "  worst domain: body \"{}\", region \"{}\", at ({:.4g}, {:.4g}, {:.4g}), J = {:.3g}\n"
+            fmt::format("no solution {} {:.6g} s: {} (residual {:.2g} after {} Newton and {} "
+                        "CG iterations).\n"
+                        "  worst domain: body \"{}\", region \"{}\", at ({:.4g}, {:.4g}, "
+                        "{:.4g}), J = {:.3g}\n"
                         "  likely cause: {}",
                         dt > 0 ? "for the step after" : "for the equilibrium after",
                         state.time,

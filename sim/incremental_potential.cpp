@@ -10,7 +10,8 @@ namespace sim {
 namespace {
 
 constexpr int chunk = 8192;
-constexpr double rounding = 1e-14;  // of a position after the sums of a step, relative to the largest coordinate
+constexpr double rounding =
+    1e-14;  // of a position after the sums of a step, relative to the largest coordinate
 
 }  // namespace
 
@@ -28,7 +29,8 @@ double IncrementalPotential::value_and_gradient(const Field& q, Field& gradient)
     corner_gradient_.resize(x_.size());
     double value = 0;
     for (const ElasticBody& body : bodies_)
-        value += body.elasticity->energy_and_gradient(&x_[body.begin], &corner_gradient_[body.begin]);
+        value += body.elasticity->energy_and_gradient(&x_[body.begin],
+                                                      &corner_gradient_[body.begin]);
     value += colliders_.add_gradient(x_, corner_gradient_);
     if (!std::isfinite(value))
         return value;

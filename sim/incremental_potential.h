@@ -16,7 +16,7 @@ namespace sim {
 ///
 /// with Φ = elastic + hourglass + collider energies, M lumped on q, and q~ the velocity after transfer, external forces
 /// and damping. Statics is the same with M = 0, dt = 1 (q is then a displacement) and the external forces in Φ:
-/// W(u) = Φ(x_n + T u) - f·(x_n + T u).  
+/// W(u) = Φ(x_n + T u) - f·(x_n + T u).
 class IncrementalPotential : public Potential {
   public:
     /// The bodies' energies and their ranges in the field of all corners.
@@ -25,7 +25,9 @@ class IncrementalPotential : public Potential {
         int begin = 0, end = 0;
     };
 
-    IncrementalPotential(const CornerMap& map, std::vector<ElasticBody> bodies, ColliderContact& colliders)
+    IncrementalPotential(const CornerMap& map,
+                         std::vector<ElasticBody> bodies,
+                         ColliderContact& colliders)
         : map_(map), bodies_(std::move(bodies)), colliders_(colliders) {}
 
     /// What a step starts from. `mass`, `q_tilde` and `is_held` are indexed by q; `x_n` and `static_force` by corner
@@ -60,7 +62,8 @@ class IncrementalPotential : public Potential {
     std::vector<ElasticBody> bodies_;
     ColliderContact& colliders_;
     Step step_;
-    Field x_, corner_gradient_, corner_product_, corner_diagonal_, inner_part_, inverse_diagonal_;
+    Field x_, corner_gradient_, corner_product_, corner_diagonal_, inner_part_,
+        inverse_diagonal_;
     double noise_ = 0;
 };
 

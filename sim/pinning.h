@@ -9,16 +9,20 @@ namespace sim {
 
 /// Which components are prescribed at a step, where they go, and which pin holds them.
 struct Prescribed {
-    Field is_free;            // (#C) 1 in free components, 0 in prescribed ones
-    Field target;             // (#C) position at the end of the step in prescribed components [m]
-    std::vector<int> holder;  // (#C) the last pin that holds a component of the corner, -1 for none
-    std::vector<int> corners; // those with a prescribed component, in order
+    Field is_free;  // (#C) 1 in free components, 0 in prescribed ones
+    Field target;   // (#C) position at the end of the step in prescribed components [m]
+    std::vector<int>
+        holder;  // (#C) the last pin that holds a component of the corner, -1 for none
+    std::vector<int> corners;  // those with a prescribed component, in order
 };
 
 /// Where the pin moves a corner to by `time`: X, X + v t, or X turned about the axis by rate·t.   [m]
 Vec3 pinned_position(const Pin& pin, const Vec3& X, double time);
 
 /// The pins in force during (time_begin, time_end]. A pin is released after `until`; later pins win, axis by axis.
-Prescribed prescribe(const Scene& scene, const Assembly& assembly, double time_begin, double time_end);
+Prescribed prescribe(const Scene& scene,
+                     const Assembly& assembly,
+                     double time_begin,
+                     double time_end);
 
 }  // namespace sim

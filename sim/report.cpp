@@ -17,7 +17,8 @@ ProbeRow region_row(const AssembledBody& body, int region, const std::vector<Vec
         if (body.lattice.region[p] != region)
             continue;
         const Mat3 F = deformation_gradient(body.lattice, p, corners);
-        const double volume = body.lattice.domain_volume(p), deformed = volume * F.determinant();
+        const double volume = body.lattice.domain_volume(p),
+                     deformed = volume * F.determinant();
         Vec3 centre = Vec3::Zero();
         for (const int c : body.lattice.corners[p])
             centre += corners[c] / 8;
@@ -59,7 +60,8 @@ Stats stats_of(Assembly& assembly, const Stepper& stepper, const State& state) {
     stats.cg_iterations = stepper.cg_iterations;
     stats.total_mass = stepper.mass_on_dofs();
     for (std::size_t c = 0; c < state.x.size(); ++c) {
-        const Vec3 x = unpadded(state.x[c]), momentum = assembly.mass[c][0] * unpadded(state.v[c]);
+        const Vec3 x = unpadded(state.x[c]),
+                   momentum = assembly.mass[c][0] * unpadded(state.v[c]);
         stats.kinetic_energy += 0.5 * momentum.dot(unpadded(state.v[c]));
         stats.gravitational_energy -= assembly.mass[c][0] * assembly.gravity.dot(x);
         stats.linear_momentum += momentum;
@@ -68,13 +70,17 @@ Stats stats_of(Assembly& assembly, const Stepper& stepper, const State& state) {
     Field gradient(state.x.size());
     stats.smallest_J = std::numeric_limits<double>::infinity();
     for (AssembledBody& body : assembly.bodies) {
-        stats.elastic_energy += body.elasticity.energy_and_gradient(&state.x[body.begin], &gradient[body.begin]);
-        stats.smallest_J = std::min(stats.smallest_J, body.elasticity.smallest_J(&state.x[body.begin]).J);
+        stats.elastic_energy +=
+            body.elasticity.energy_and_gradient(&state.x[body.begin], &gradient[body.begin]);
+        stats.smallest_J =
+            std::min(stats.smallest_J, body.elasticity.smallest_J(&state.x[body.begin]).J);
     }
     return stats;
 }
 
-std::vector<ProbeRow> probes_of(const Scene& scene, const Assembly& assembly, const State& state) {
+std::vector<ProbeRow> probes_of(const Scene& scene,
+                                const Assembly& assembly,
+                                const State& state) {
     std::vector<ProbeRow> rows;
     for (std::size_t k = 0; k < scene.probes.size(); ++k) {
         const AssembledProbe& probe = assembly.probes[k];
@@ -91,7 +97,10 @@ std::vector<ProbeRow> probes_of(const Scene& scene, const Assembly& assembly, co
     return rows;
 }
 
-std::vector<PinRow> pins_of(const Scene& scene, const Assembly& assembly, const Stepper& stepper, const State& state) {
+std::vector<PinRow> pins_of(const Scene& scene,
+                            const Assembly& assembly,
+                            const Stepper& stepper,
+                            const State& state) {
     std::vector<PinRow> rows;
     for (std::size_t k = 0; k < scene.pins.size(); ++k) {
         PinRow row;

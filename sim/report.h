@@ -8,9 +8,14 @@ namespace sim {
 
 Stats stats_of(Assembly& assembly, const Stepper& stepper, const State& state);
 
-std::vector<ProbeRow> probes_of(const Scene& scene, const Assembly& assembly, const State& state);
+std::vector<ProbeRow> probes_of(const Scene& scene,
+                                const Assembly& assembly,
+                                const State& state);
 
-std::vector<PinRow> pins_of(const Scene& scene, const Assembly& assembly, const Stepper& stepper, const State& state);
+std::vector<PinRow> pins_of(const Scene& scene,
+                            const Assembly& assembly,
+                            const Stepper& stepper,
+                            const State& state);
 
 /// Corner positions of one body.   (#C of the body) [m]
 std::vector<Vec3> corners_of(const AssembledBody& body, const Field& x);

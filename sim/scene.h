@@ -51,7 +51,17 @@ struct Selector {
         std::vector<Selector> of;  // exactly one
     };
 
-    std::variant<All, assets::Box, assets::Sphere, HalfSpace, MeshMaterial, Inside, Depth, AllOf, AnyOf, Not> is;
+    std::variant<All,
+                 assets::Box,
+                 assets::Sphere,
+                 HalfSpace,
+                 MeshMaterial,
+                 Inside,
+                 Depth,
+                 AllOf,
+                 AnyOf,
+                 Not>
+        is;
     std::string key;  // the shot file's path of this selector, for error messages
 };
 
@@ -59,9 +69,9 @@ struct Region {
     std::string name;
     Selector select;
     Model model = Model::NeoHookean;
-    double young_modulus = 0;   // [Pa], > 0
-    double poisson_ratio = 0;   // -1 < nu < 1/2
-    double density = 0;         // [kg/m³], > 0
+    double young_modulus = 0;       // [Pa], > 0
+    double poisson_ratio = 0;       // -1 < nu < 1/2
+    double density = 0;             // [kg/m³], > 0
     Vec3f color{0.8f, 0.8f, 0.8f};  // sRGB as typed in the shot file, 0..1
 };
 
@@ -74,9 +84,9 @@ struct Skin {
 struct Body {
     std::string name;
     assets::Source source;
-    double domain_size = 0;   // edge s of a domain [m]
-    Vec3 velocity{0, 0, 0};   // initial [m/s]
-    Vec3 spin{0, 0, 0};       // initial angular velocity about the centre of mass [rad/s]
+    double domain_size = 0;       // edge s of a domain [m]
+    Vec3 velocity{0, 0, 0};       // initial [m/s]
+    Vec3 spin{0, 0, 0};           // initial angular velocity about the centre of mass [rad/s]
     std::vector<Region> regions;  // layers: later wins; the first selects all
     std::vector<Skin> skins;      // at least one
 };

@@ -45,7 +45,8 @@ struct Simulation::Impl {
     State state;
 };
 
-Simulation::Simulation(Scene scene, double frame_time) : impl_(new Impl(std::move(scene), frame_time)) {}
+Simulation::Simulation(Scene scene, double frame_time)
+    : impl_(new Impl(std::move(scene), frame_time)) {}
 
 Simulation::~Simulation() = default;
 
@@ -107,7 +108,9 @@ std::vector<assets::SurfaceFrame> Simulation::deformed_surfaces() const {
         const bool shows_enriched = impl_->scene.solver.method == Method::Enriched;
         for (const EmbeddedSurface& surface : body.surfaces)
             result.push_back(surface.deformed(
-                body.lattice, corners, shows_enriched ? body.enrichment.enriched() : std::vector<char>{}));
+                body.lattice,
+                corners,
+                shows_enriched ? body.enrichment.enriched() : std::vector<char>{}));
     }
     return result;
 }
@@ -124,7 +127,8 @@ std::vector<std::byte> Simulation::checkpoint() const {
 void Simulation::restore(const std::vector<std::byte>& bytes) {
     State& state = impl_->state;
     const std::size_t field_size = state.x.size() * sizeof(Vec3p);
-    assets::check(bytes.size() == 2 * sizeof(double) + 3 * field_size, "checkpoint of another scene");
+    assets::check(bytes.size() == 2 * sizeof(double) + 3 * field_size,
+                  "checkpoint of another scene");
     const std::byte* next = bytes.data();
     const auto take = [&](void* to, std::size_t size) {
         std::memcpy(to, next, size);

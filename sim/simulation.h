@@ -24,10 +24,10 @@ struct Stats {
 /// One row of probes.csv: a material point, or a region's centre with its mean stretch and volume.
 struct ProbeRow {
     std::string name;
-    Vec3 position{0, 0, 0};     // [m]
+    Vec3 position{0, 0, 0};  // [m]
     bool is_region = false;
-    double stretch = 0;         // volume-weighted mean of the largest principal stretch
-    double volume = 0;          // [m³]
+    double stretch = 0;  // volume-weighted mean of the largest principal stretch
+    double volume = 0;   // [m³]
 };
 
 /// One row of pins.csv: what holds the body, i.e. force and moment of the pin on the body.
@@ -51,7 +51,8 @@ class Simulation {
     double time() const;
     const Scene& scene() const;
     const Lattice& lattice(int body) const;
-    const std::vector<std::string>& notes() const;  // repairs and simplifications to be told to the user
+    const std::vector<std::string>& notes()
+        const;  // repairs and simplifications to be told to the user
 
     Stats stats() const;
     std::vector<ProbeRow> probes() const;

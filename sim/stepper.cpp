@@ -43,7 +43,8 @@ Stepper::Stepper(const Scene& scene, Assembly& assembly)
 }
 
 void Stepper::choose_free_corners(const Field& x) {
-    const Method method = scene_.solver.steps == Steps::Static ? Method::Fem : scene_.solver.method;
+    const Method method =
+        scene_.solver.steps == Steps::Static ? Method::Fem : scene_.solver.method;
     free_.assign(x.size(), method == Method::Fem);
     if (method == Method::Enriched)
         for (AssembledBody& body : assembly_.bodies)
@@ -113,7 +114,8 @@ std::vector<RigidMotion> Stepper::rigid_motions(const State& state) const {
         Mat3 second_moment = Mat3::Zero();
         Vec3 L = Vec3::Zero();
         for (int c = begin; c < end; ++c) {
-            const Vec3 r = unpadded(state.x[c] - rigid.centre), v = unpadded(state.v[c] - rigid.velocity);
+            const Vec3 r = unpadded(state.x[c] - rigid.centre),
+                       v = unpadded(state.v[c] - rigid.velocity);
             second_moment += assembly_.mass[c][0] * r * r.transpose();
             L += assembly_.mass[c][0] * r.cross(v);
         }
@@ -140,7 +142,8 @@ void Stepper::guess(const State& state, double dt) {
     for (const int c : prescribed_.corners) {
         const int i = map_.dof_of_corner()[c];
         const Vec3p velocity = (prescribed_.target[c] - state.x[c]) / dt;
-        q_[i] = prescribed_.is_free[c] * q_[i] + (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]) * velocity;
+        q_[i] = prescribed_.is_free[c] * q_[i]
+                + (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]) * velocity;
     }
 }
 
@@ -220,16 +223,17 @@ void Stepper::balance_momentum(const State& state, double dt, Field& u) const {
     // and what colliders give is in the gradient.
     const double damped = 1 + scene_.solver.damping * dt;
     for (const AssembledBody& body : assembly_.bodies) {
-        const bool held = std::any_of(prescribed_.corners.begin(), prescribed_.corners.end(), [&](int c) {
-            return c >= body.begin && c < body.end;
-        });
+        const bool held = std::any_of(prescribed_.corners.begin(),
+                                      prescribed_.corners.end(),
+                                      [&](int c) { return c >= body.begin && c < body.end; });
         if (held)
             continue;
         Vec3p missing{};
         double mass = 0;
         for (int c = body.begin; c < body.end; ++c) {
             const Vec3p force = assembly_.force[c] - potential_.corner_gradient()[c];
-            missing += (assembly_.mass[c] * state.v[c] + dt * force) / damped - assembly_.mass[c] * u[c];
+            missing += (assembly_.mass[c] * state.v[c] + dt * force) / damped
+                       - assembly_.mass[c] * u[c];
             mass += assembly_.mass[c][0];
         }
         for (int c = body.begin; c < body.end; ++c)
@@ -283,7 +287,10 @@ void Stepper::equilibrium(State& state, double time) {
     state.time = time;
 }
 
-bool Stepper::try_equilibrium(State& state, double time_begin, double time_end, NewtonSummary& summary) {
+bool Stepper::try_equilibrium(State& state,
+                              double time_begin,
+                              double time_end,
+                              NewtonSummary& summary) {
     prescribed_ = prescribe(scene_, assembly_, time_begin, time_end);
     choose_free_corners(state.x);
     const int n = map_.n_dofs();
@@ -299,7 +306,8 @@ bool Stepper::try_equilibrium(State& state, double time_begin, double time_end, 
     for (const int c : prescribed_.corners) {
         const int i = map_.dof_of_corner()[c];
         step.is_free[i] = prescribed_.is_free[c];
-        q_[i] = (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]) * (prescribed_.target[c] - state.x[c]);
+        q_[i] =
+            (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]) * (prescribed_.target[c] - state.x[c]);
     }
     colliders_.begin_step(state.x, 0);
 
@@ -318,8 +326,10 @@ bool Stepper::try_equilibrium(State& state, double time_begin, double time_end, 
     state.inner_impulse.assign(state.x.size(), Vec3p{});
     state.time = time_end;
     reaction_.assign(state.x.size(), Vec3p{});
-    for (const int c : prescribed_.corners)  // the potential's gradient holds the external force already
-        reaction_[c] = potential_.corner_gradient()[c] * (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]);
+    for (const int c :
+         prescribed_.corners)  // the potential's gradient holds the external force already
+        reaction_[c] =
+            potential_.corner_gradient()[c] * (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]);
     ++steps;
     return true;
 }

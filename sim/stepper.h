@@ -1,8 +1,8 @@
 // A step in time, and an equilibrium: the method itself.
 #pragma once
 
-#include "sim/incremental_potential.h"
 #include "sim/contact/grid_contact.h"
+#include "sim/incremental_potential.h"
 #include "sim/pinning.h"
 #include "sim/solver/newton.h"
 
@@ -12,10 +12,11 @@ namespace sim {
 
 /// All that changes, and that later steps depend on. Indexed by corner.
 struct State {
-    double time = 0;      // [s]
-    Field x, v;           // positions [m], velocities [m/s]
-    Field inner_impulse;  // velocity that inner forces and contact gave in the last step, a guess for the next [m/s]
-    double last_dt = 0;   // of that step [s]
+    double time = 0;  // [s]
+    Field x, v;       // positions [m], velocities [m/s]
+    Field
+        inner_impulse;  // velocity that inner forces and contact gave in the last step, a guess for the next [m/s]
+    double last_dt = 0;  // of that step [s]
 };
 
 /// v(x) = velocity + spin × (x - centre): the rigid motion with a body's linear and angular momentum.
@@ -25,7 +26,10 @@ struct RigidMotion {
     Vec3p at(const Vec3p& x) const {
         const Vec3p r = x - centre;
         return velocity
-               + Vec3p{spin[1] * r[2] - spin[2] * r[1], spin[2] * r[0] - spin[0] * r[2], spin[0] * r[1] - spin[1] * r[0], 0};
+               + Vec3p{spin[1] * r[2] - spin[2] * r[1],
+                       spin[2] * r[0] - spin[0] * r[2],
+                       spin[0] * r[1] - spin[1] * r[0],
+                       0};
     }
 };
 
@@ -63,7 +67,10 @@ class Stepper {
     void balance_momentum(const State& state, double dt, Field& u) const;
     void see_on_grid(const Field& u, Field& contact_velocity) const;
     void set_reactions(const State& state, double dt);
-    bool try_equilibrium(State& state, double time_begin, double time_end, NewtonSummary& summary);
+    bool try_equilibrium(State& state,
+                         double time_begin,
+                         double time_end,
+                         NewtonSummary& summary);
     [[noreturn]] void fail(const State& state, double dt, const NewtonSummary& summary);
 
     const Scene& scene_;
@@ -74,8 +81,8 @@ class Stepper {
     IncrementalPotential potential_;
     NewtonScratch scratch_;
     Prescribed prescribed_;
-    std::vector<char> free_;                  // (#C)
-    std::vector<double> inverse_mass_;        // (#dofs) 0 where there is none [1/kg]
+    std::vector<char> free_;            // (#C)
+    std::vector<double> inverse_mass_;  // (#dofs) 0 where there is none [1/kg]
     Field dof_mass_, q_n_, q_, corner_, reaction_;
 };
 

@@ -11,8 +11,8 @@ namespace sim {
 
 namespace {
 
-constexpr double slip_speed = 1e-3;         // [m/s]
-constexpr double stick_coefficient = 1e2;   // Coulomb coefficient that stands for "never slides"
+constexpr double slip_speed = 1e-3;        // [m/s]
+constexpr double stick_coefficient = 1e2;  // Coulomb coefficient that stands for "never slides"
 
 struct Distance {
     double gap = 0;
@@ -53,7 +53,8 @@ double coefficient(const Friction& friction) {
 
 }  // namespace
 
-ColliderContact::ColliderContact(std::vector<Collider> colliders, std::vector<ContactCorner> corners)
+ColliderContact::ColliderContact(std::vector<Collider> colliders,
+                                 std::vector<ContactCorner> corners)
     : colliders_(std::move(colliders)), corners_(std::move(corners)) {
     lagged_normal_force_.assign(colliders_.size() * corners_.size(), 0.0);
 }
@@ -66,11 +67,18 @@ void ColliderContact::for_touching(const Field& x, const Visit& visit) const {
         for (std::size_t j = 0; j < colliders_.size(); ++j) {
             const std::size_t pair = k * colliders_.size() + j;
             const Distance distance =
-                std::visit([&](const auto& shape) { return distance_to(shape, position); }, colliders_[j].shape);
+                std::visit([&](const auto& shape) { return distance_to(shape, position); },
+                           colliders_[j].shape);
             const double depth = std::max(0.0, -(distance.gap + corner.outside));
-            const double friction_force = coefficient(colliders_[j].friction) * lagged_normal_force_[pair];
+            const double friction_force =
+                coefficient(colliders_[j].friction) * lagged_normal_force_[pair];
             if (depth > 0 || friction_force > 0)
-                visit(Touch{corner.corner, corner.stiffness, distance.normal, depth, friction_force}, pair);
+                visit(Touch{corner.corner,
+                            corner.stiffness,
+                            distance.normal,
+                            depth,
+                            friction_force},
+                      pair);
         }
     }
 }
@@ -81,7 +89,9 @@ void ColliderContact::begin_step(const Field& x_n, double dt) {
     x_n_ = x_n;
     slip_length_ = slip_speed * dt;
     std::vector<double> force(lagged_normal_force_.size(), 0.0);
-    for_touching(x_n, [&](const Touch& touch, std::size_t pair) { force[pair] = touch.stiffness * touch.depth; });
+    for_touching(x_n, [&](const Touch& touch, std::size_t pair) {
+        force[pair] = touch.stiffness * touch.depth;
+    });
     lagged_normal_force_ = std::move(force);
 }
 
@@ -96,7 +106,8 @@ double ColliderContact::add_gradient(const Field& x, Field& gradient) const {
             const Vec3 u = unpadded(x[touch.corner] - x_n_[touch.corner]);
             const Vec3 slip = u - touch.normal * touch.normal.dot(u);
             const double y = slip.norm();
-            energy += touch.friction_force * (y < slip_length_ ? y * y / (2 * slip_length_) : y - slip_length_ / 2);
+            energy += touch.friction_force
+                      * (y < slip_length_ ? y * y / (2 * slip_length_) : y - slip_length_ / 2);
             g += touch.friction_force / std::max(y, slip_length_) * slip;
         }
         gradient[touch.corner] += padded(g);
@@ -119,7 +130,8 @@ void ColliderContact::linearize(const Field& x) {
             if (y < slip_length_)
                 H += touch.friction_force / slip_length_ * tangential;
             else
-                H += touch.friction_force / y * (tangential - slip * slip.transpose() / (y * y));
+                H +=
+                    touch.friction_force / y * (tangential - slip * slip.transpose() / (y * y));
         }
         blocks_.push_back({touch.corner, H});
     });

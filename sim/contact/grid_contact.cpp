@@ -27,7 +27,8 @@ struct Stencil {
 struct Side {
     double mass = 0;
     Vec3 momentum{0, 0, 0}, weight_gradient{0, 0, 0};
-    double reach = -std::numeric_limits<double>::infinity();  // largest distance along the outward normal
+    double reach =
+        -std::numeric_limits<double>::infinity();  // largest distance along the outward normal
 };
 
 struct Node {
@@ -48,11 +49,13 @@ Bounds bounds_of(const ContactBody& body, const Field& x, const Field& velocity,
 
 /// The part of space where both bodies can be, a cell around it included; empty where low > high.
 Bounds common(const Bounds& a, const Bounds& b, double cell_size) {
-    return {(a.low > b.low ? a.low : b.low) - cell_size, (a.high < b.high ? a.high : b.high) + cell_size};
+    return {(a.low > b.low ? a.low : b.low) - cell_size,
+            (a.high < b.high ? a.high : b.high) + cell_size};
 }
 
 bool is_empty(const Bounds& bounds) {
-    return bounds.low[0] > bounds.high[0] || bounds.low[1] > bounds.high[1] || bounds.low[2] > bounds.high[2];
+    return bounds.low[0] > bounds.high[0] || bounds.low[1] > bounds.high[1]
+           || bounds.low[2] > bounds.high[2];
 }
 
 bool holds(const Bounds& bounds, const Vec3p& x) {
@@ -65,7 +68,11 @@ bool holds(const Bounds& bounds, const Vec3p& x) {
 /// Nodes of the common part of two bodies, numbered as they are met.
 class PairGrid {
   public:
-    PairGrid(const ContactBody& a, const ContactBody& b, const ContactFields& fields, const Bounds& where, double h)
+    PairGrid(const ContactBody& a,
+             const ContactBody& b,
+             const ContactFields& fields,
+             const Bounds& where,
+             double h)
         : fields_(fields), h_(h) {
         for (const ContactBody* body : {&a, &b}) {
             std::vector<int>& list = corners_[body == &b];
@@ -110,7 +117,8 @@ class PairGrid {
                 key[k] = static_cast<long>(base[k]) + side;
             }
             result.weight[a] = w.prod();
-            result.gradient[a] = {slope[0] * w[1] * w[2], w[0] * slope[1] * w[2], w[0] * w[1] * slope[2]};
+            result.gradient[a] = {
+                slope[0] * w[1] * w[2], w[0] * slope[1] * w[2], w[0] * w[1] * slope[2]};
             result.node[a] = number(key);
         }
         return result;
@@ -160,7 +168,8 @@ class PairGrid {
                     if (stencils_[s][k].weight[a] <= 0)
                         continue;
                     Node& node = nodes_[stencils_[s][k].node[a]];
-                    const double along = (s == 0 ? 1 : -1) * node.normal.dot(x) - fields_.outside[c];
+                    const double along =
+                        (s == 0 ? 1 : -1) * node.normal.dot(x) - fields_.outside[c];
                     node.side[s].reach = std::max(node.side[s].reach, along);
                 }
             }
@@ -178,7 +187,9 @@ class PairGrid {
         const Vec3 slip = relative - change;
         const double speed = slip.norm();
         if (speed > 0)
-            change += (friction.stick ? 1.0 : std::min(1.0, friction.coefficient * approach / speed)) * slip;
+            change +=
+                (friction.stick ? 1.0 : std::min(1.0, friction.coefficient * approach / speed))
+                * slip;
         const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
         node.dv[0] = -reduced_mass / a.mass * change;
         node.dv[1] = reduced_mass / b.mass * change;

@@ -15,7 +15,9 @@ namespace sim {
 namespace {
 
 #define ALWAYS_INLINE [[gnu::always_inline]] inline
-#define INLINED __attribute__((always_inline))  // the same for a lambda, whose place for [[ ]] binds elsewhere
+#define INLINED     \
+    __attribute__(( \
+        always_inline))  // the same for a lambda, whose place for [[ ]] binds elsewhere
 
 template <class Body, int... k>
 ALWAYS_INLINE void unroll(const Body& body, std::integer_sequence<int, k...>) {
@@ -78,23 +80,39 @@ constexpr int linear_mode[3] = {1, 2, 4};
 constexpr int bilinear_mode[3] = {3, 5, 6};
 constexpr int trilinear_mode = 7;
 
-ALWAYS_INLINE void load_modes(const Brick& brick, const BrickFields& fields, int slot, Eight h[3]) {
+ALWAYS_INLINE void load_modes(const Brick& brick,
+                              const BrickFields& fields,
+                              int slot,
+                              Eight h[3]) {
     times<3>([&](auto i) INLINED {
-        times<8>([&](auto a) INLINED { h[i].v[a] = load(fields.in[i] + slot + brick.step[a]); });
+        times<8>([&](auto a)
+                     INLINED { h[i].v[a] = load(fields.in[i] + slot + brick.step[a]); });
         to_modes(h[i]);
     });
 }
 
-ALWAYS_INLINE void add_modes(const Brick& brick, const BrickFields& fields, int slot, Eight g[3]) {
+/// Where sums for corner a of component i go, seen from the corner of the same row on the left.
+ALWAYS_INLINE double* corner_sums(const BrickFields& fields, int i, int a) {
+    return a & 1 ? fields.out_right[i] : fields.out[i];
+}
+
+ALWAYS_INLINE void add_modes(const Brick& brick,
+                             const BrickFields& fields,
+                             int slot,
+                             Eight g[3]) {
     times<3>([&](auto i) INLINED {
         g[i].v[0] = Lanes{};
         from_modes(g[i]);
-        times<8>([&](auto a) INLINED { add_to(fields.out[i] + slot + brick.step[a], g[i].v[a]); });
+        times<8>([&](auto a) INLINED {
+            add_to(corner_sums(fields, i, a) + slot + brick.step[a & 6], g[i].v[a]);
+        });
     });
 }
 
 /// F of a batch; the identity in empty slots. ∂x/∂X_j = h_j / (4 s).
-ALWAYS_INLINE Matrix3<Lanes> gradient_of_modes(const Eight h[3], const Lanes& volume, double edge) {
+ALWAYS_INLINE Matrix3<Lanes> gradient_of_modes(const Eight h[3],
+                                               const Lanes& volume,
+                                               double edge) {
     Matrix3<Lanes> F;
     times<9>([&](auto k) INLINED {
         const Lanes entry = h[k % 3].v[linear_mode[k / 3]] * (1 / (4 * edge));
@@ -125,7 +143,11 @@ ALWAYS_INLINE Lanes where_law(const Lanes& law, Model model) {
 }
 
 template <class Law>
-ALWAYS_INLINE void take_law(const Brick& brick, int b, Model model, const Matrix3<Lanes>& F, Lanes& psi,
+ALWAYS_INLINE void take_law(const Brick& brick,
+                            int b,
+                            Model model,
+                            const Matrix3<Lanes>& F,
+                            Lanes& psi,
                             Matrix3<Lanes>& P) {
     const unsigned bit = 1u << static_cast<int>(model);
     if (!(brick.laws[b] & bit))
@@ -144,7 +166,8 @@ ALWAYS_INLINE void take_law(const Brick& brick, int b, Model model, const Matrix
 }
 
 template <class Law>
-ALWAYS_INLINE void take_stiffness(const Brick& brick, int b, Model model, const Matrix3<Lanes>& F, Lanes* A) {
+ALWAYS_INLINE void take_stiffness(
+    const Brick& brick, int b, Model model, const Matrix3<Lanes>& F, Lanes* A) {
     const unsigned bit = 1u << static_cast<int>(model);
     if (!(brick.laws[b] & bit))
         return;
@@ -228,9 +251,12 @@ void add_brick_diagonal(const Brick& brick, double edge, const BrickFields& fiel
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
         const Lanes* A = &brick.stiffness[45 * b];
         times<3>([&](auto i) INLINED {
-            Lanes sum = A[packed_diagonal[i]] + A[packed_diagonal[3 + i]] + A[packed_diagonal[6 + i]];
+            Lanes sum =
+                A[packed_diagonal[i]] + A[packed_diagonal[3 + i]] + A[packed_diagonal[6 + i]];
             sum = sum * (1 / (16 * edge * edge)) + 3.5 * brick.hourglass[b];
-            times<8>([&](auto a) INLINED { add_to(fields.out[i] + brick.batch[b] + brick.step[a], sum); });
+            times<8>([&](auto a) INLINED {
+                add_to(corner_sums(fields, i, a) + brick.batch[b] + brick.step[a & 6], sum);
+            });
         });
     }
 }

@@ -21,17 +21,20 @@ struct Brick {
     std::vector<int> domain;     // (8 #batches) domain of each slot, -1 where none
     std::vector<unsigned> laws;  // (#batches) bit m set where a slot has model m
 
-    LaneVector volume;                     // (#batches) filled volume V [m³]
-    LaneVector mu, lambda;                 // (#batches) [Pa]
-    LaneVector law;                        // (#batches) sim::Model as a number
-    LaneVector stiffness;                  // (45 #batches) V ∂P/∂F, upper triangle [J]
-    LaneVector hourglass;                  // (#batches) stiffness of the bilinear hourglass modes [N/m]
+    LaneVector volume;      // (#batches) filled volume V [m³]
+    LaneVector mu, lambda;  // (#batches) [Pa]
+    LaneVector law;         // (#batches) sim::Model as a number
+    LaneVector stiffness;   // (45 #batches) V ∂P/∂F, upper triangle [J]
+    LaneVector hourglass;   // (#batches) stiffness of the bilinear hourglass modes [N/m]
 };
 
 /// What a pass over a brick reads and writes: structure of arrays, n_local entries per component.
 struct BrickFields {
     const double* in[3];  // corner positions x or displacements u [m]
     double* out[3];       // added to: gradient [N], product K u [N], or the diagonal of K [N/m]
+    double* out_right
+        [3];  // the same for corners on the right of a domain, one entry to the left of their place: a sum
+        // that overlaps the one just stored would wait for it to reach the cache
 };
 
 /// ∂E/∂x is added to `out`; returns the energy E = Σ V Ψ(F) + E_hg [J], +infinity where a law forbids the state.

@@ -15,7 +15,8 @@ void project_brick(Brick& brick, double edge, const BrickFields& fields) {
             for (int a = 0; a < 8; ++a)
                 for (int i = 0; i < 3; ++i)
                     for (int j = 0; j < 3; ++j)
-                        F(i, j) += ((a >> j & 1) ? 1 : -1) * fields.in[i][slot + brick.step[a]] / (4 * edge);
+                        F(i, j) += ((a >> j & 1) ? 1 : -1) * fields.in[i][slot + brick.step[a]]
+                                   / (4 * edge);
             const auto model = static_cast<Model>(static_cast<int>(brick.law[b][l]));
             const Mat9 A = projected_stiffness(model, F, brick.mu[b][l], brick.lambda[b][l]);
             int k = 0;

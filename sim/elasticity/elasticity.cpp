@@ -45,7 +45,8 @@ Elasticity::Elasticity(const Lattice& lattice, const Body& body) : edge_(lattice
         const int n_bricks = (n + largest_brick[k] - 1) / largest_brick[k];
         size[k] = (n + n_bricks - 1) / n_bricks;
     }
-    std::map<std::array<int, 3>, std::vector<int>> domains_of_brick;  // keyed z, y, x: lattice order
+    std::map<std::array<int, 3>, std::vector<int>>
+        domains_of_brick;  // keyed z, y, x: lattice order
     for (int p = 0; p < lattice.n_domains(); ++p) {
         std::array<int, 3> key;
         for (int k = 0; k < 3; ++k)
@@ -74,6 +75,7 @@ Elasticity::Elasticity(const Lattice& lattice, const Body& body) : edge_(lattice
     for (int i = 0; i < 3; ++i) {
         in_[i].assign(corner_of_local_.size(), 0.0);
         out_[i].assign(corner_of_local_.size(), 0.0);
+        out_right_[i].assign(corner_of_local_.size(), 0.0);
     }
 }
 
@@ -105,7 +107,8 @@ void Elasticity::fill_brick(const Lattice& lattice,
         const auto first = domain_of_slot.begin() + slot;
         if (std::all_of(first, first + lane_count, [](int p) { return p < 0; }))
             continue;
-        alignas(64) Lanes volume = zero, mu = zero, lambda = zero, law = zero - 1.0, hourglass = zero;
+        alignas(64) Lanes volume = zero, mu = zero, lambda = zero, law = zero - 1.0,
+                          hourglass = zero;
         unsigned laws = 0;
         for (int l = 0; l < lane_count; ++l) {
             const int p = first[l];
@@ -137,34 +140,41 @@ BrickFields Elasticity::fields(const Brick& brick) {
     for (int i = 0; i < 3; ++i) {
         fields.in[i] = in_[i].data() + brick.first_local;
         fields.out[i] = out_[i].data() + brick.first_local;
+        fields.out_right[i] = out_right_[i].data() + brick.first_local;
     }
     return fields;
 }
 
 void Elasticity::load(const Vec3p* values) {
-    for_chunks(static_cast<int>(corner_of_local_.size()), corner_chunk, [&](int begin, int end) {
-        for (int l = begin; l < end; ++l) {
-            const int c = corner_of_local_[l];
-            const Vec3p value = c >= 0 ? values[c] : Vec3p{};
-            for (int i = 0; i < 3; ++i) {
-                in_[i][l] = value[i];
-                out_[i][l] = 0;
+    for_chunks(
+        static_cast<int>(corner_of_local_.size()), corner_chunk, [&](int begin, int end) {
+            for (int l = begin; l < end; ++l) {
+                const int c = corner_of_local_[l];
+                const Vec3p value = c >= 0 ? values[c] : Vec3p{};
+                for (int i = 0; i < 3; ++i) {
+                    in_[i][l] = value[i];
+                    out_[i][l] = 0;
+                    out_right_[i][l] = 0;
+                }
             }
-        }
-    });
+        });
 }
 
 void Elasticity::sum_to_corners(Vec3p* values) const {
-    for_chunks(static_cast<int>(sources_start_.size()) - 1, corner_chunk, [&](int begin, int end) {
-        for (int c = begin; c < end; ++c) {
-            Vec3p sum{};
-            for (int k = sources_start_[c]; k < sources_start_[c + 1]; ++k) {
-                const int l = sources_[k];
-                sum += Vec3p{out_[0][l], out_[1][l], out_[2][l], 0};
+    for_chunks(
+        static_cast<int>(sources_start_.size()) - 1, corner_chunk, [&](int begin, int end) {
+            for (int c = begin; c < end; ++c) {
+                Vec3p sum{};
+                for (int k = sources_start_[c]; k < sources_start_[c + 1]; ++k) {
+                    const int l = sources_[k], left = l - 1;
+                    sum += Vec3p{out_[0][l], out_[1][l], out_[2][l], 0};
+                    if (l > 0)
+                        sum += Vec3p{
+                            out_right_[0][left], out_right_[1][left], out_right_[2][left], 0};
+                }
+                values[c] = sum;
             }
-            values[c] = sum;
-        }
-    });
+        });
 }
 
 template <class Kernel>
@@ -177,12 +187,13 @@ void Elasticity::for_bricks(const Kernel& kernel) {
 
 double Elasticity::energy_and_gradient(const Vec3p* x, Vec3p* gradient) {
     load(x);
-    const double energy = sum_chunks(static_cast<int>(bricks_.size()), 1, [&](int begin, int end) {
-        double sum = 0;
-        for (int k = begin; k < end; ++k)
-            sum += add_brick_gradient(bricks_[k], edge_, fields(bricks_[k]));
-        return sum;
-    });
+    const double energy =
+        sum_chunks(static_cast<int>(bricks_.size()), 1, [&](int begin, int end) {
+            double sum = 0;
+            for (int k = begin; k < end; ++k)
+                sum += add_brick_gradient(bricks_[k], edge_, fields(bricks_[k]));
+            return sum;
+        });
     sum_to_corners(gradient);
     return energy;
 }
@@ -203,8 +214,9 @@ void Elasticity::product(const Vec3p* u, Vec3p* product) {
 }
 
 void Elasticity::diagonal(Vec3p* diagonal) {
-    for (auto& component : out_)
-        std::fill(component.begin(), component.end(), 0.0);
+    for (auto* sums : {&out_, &out_right_})
+        for (auto& component : *sums)
+            std::fill(component.begin(), component.end(), 0.0);
     for_bricks([&](Brick& brick) { add_brick_diagonal(brick, edge_, fields(brick)); });
     sum_to_corners(diagonal);
 }

@@ -45,8 +45,11 @@ class Elasticity {
     SmallestJ smallest_J(const Vec3p* x);
 
   private:
-    void fill_brick(const Lattice& lattice, const Body& body, const std::array<int, 3>& low,
-                    const std::array<int, 3>& size, const std::vector<int>& domains);
+    void fill_brick(const Lattice& lattice,
+                    const Body& body,
+                    const std::array<int, 3>& low,
+                    const std::array<int, 3>& size,
+                    const std::vector<int>& domains);
     void load(const Vec3p* values);
     void sum_to_corners(Vec3p* values) const;
     template <class Kernel>
@@ -55,9 +58,9 @@ class Elasticity {
 
     double edge_ = 0;
     std::vector<Brick> bricks_;
-    std::vector<int> corner_of_local_;                // (#pool) -1 where the lattice has no corner
-    std::vector<int> sources_start_, sources_;        // corner -> its local corners, in order
-    std::array<std::vector<double>, 3> in_, out_;     // (#pool) per component
+    std::vector<int> corner_of_local_;          // (#pool) -1 where the lattice has no corner
+    std::vector<int> sources_start_, sources_;  // corner -> its local corners, in order
+    std::array<std::vector<double>, 3> in_, out_, out_right_;  // (#pool) per component
 };
 
 }  // namespace sim

@@ -32,7 +32,8 @@ std::vector<int> boundary_domains(const Lattice& lattice) {
                 std::array<int, 3> neighbour = lattice.cell[p];
                 neighbour[axis] += side;
                 const auto found = domain_at.find(neighbour);
-                differs |= found != domain_at.end() && lattice.region[found->second] != lattice.region[p];
+                differs |= found != domain_at.end()
+                           && lattice.region[found->second] != lattice.region[p];
             }
         if (differs)
             boundary.push_back(p);
@@ -53,7 +54,8 @@ void InterfaceEnrichment::update(const Lattice& lattice, const Vec3p* corners, c
     Vec3p low{}, high{};
     for (int p = 0; p < lattice.n_domains(); ++p) {
         const Vec3p scaled = centre(lattice, p, corners) * (1 / cell_size_);
-        const Vec3p cell{std::floor(scaled[0]), std::floor(scaled[1]), std::floor(scaled[2]), 0};
+        const Vec3p cell{
+            std::floor(scaled[0]), std::floor(scaled[1]), std::floor(scaled[2]), 0};
         cell_of_domain_[p] = cell;
         if (p == 0)
             low = high = cell;
@@ -62,8 +64,9 @@ void InterfaceEnrichment::update(const Lattice& lattice, const Vec3p* corners, c
     }
     const Vec3p n = high - low + 1.0;
     if (!(n[0] * n[1] * n[2] < most_cells))
-        throw assets::Error(assets::ErrorKind::Diverged,
-                            "a body spreads over more background cells than can be held; it has flown apart");
+        throw assets::Error(
+            assets::ErrorKind::Diverged,
+            "a body spreads over more background cells than can be held; it has flown apart");
     const auto index = [&](const Vec3p& cell) {
         const Vec3p local = cell - low;
         return static_cast<std::size_t>(local[0] + n[0] * (local[1] + n[1] * local[2]));

@@ -31,7 +31,8 @@ struct CellBox {
     Vec3p low{}, high{};  // integer cell coordinates, inclusive
 
     std::array<int, 3> size() const {
-        return {int(high[0] - low[0]) + 1, int(high[1] - low[1]) + 1, int(high[2] - low[2]) + 1};
+        return {
+            int(high[0] - low[0]) + 1, int(high[1] - low[1]) + 1, int(high[2] - low[2]) + 1};
     }
 };
 
@@ -84,9 +85,11 @@ void CornerMap::rebuild_body(const Field& corners, const BodyRange& body, int in
     if (!any)
         return;
     const Vec3p extent = box.high - box.low + 1.0;
-    if (!(extent[0] * extent[1] * extent[2] < most_cells) || !std::isfinite(sum[0] + sum[1] + sum[2]))
-        throw assets::Error(assets::ErrorKind::Diverged,
-                            "a body spreads over more background cells than can be held; it has flown apart");
+    if (!(extent[0] * extent[1] * extent[2] < most_cells)
+        || !std::isfinite(sum[0] + sum[1] + sum[2]))
+        throw assets::Error(
+            assets::ErrorKind::Diverged,
+            "a body spreads over more background cells than can be held; it has flown apart");
 
     // Counting sort of the slaved corners by cell.
     const std::array<int, 3> n = box.size();
@@ -105,11 +108,13 @@ void CornerMap::rebuild_body(const Field& corners, const BodyRange& body, int in
     // Occupied cells in order, each with its range of slaves.
     const int first_slave = static_cast<int>(slave_corner_.size());
     const int first_new_cell = static_cast<int>(cells_.size());
-    std::vector<int>& base = node_of_;  // dense coordinates of each occupied cell, read by number_nodes
+    std::vector<int>& base =
+        node_of_;  // dense coordinates of each occupied cell, read by number_nodes
     base.clear();
     for (int cell = 0; cell < n_cells; ++cell)
         if (cell_start_[cell + 1] > cell_start_[cell]) {
-            cells_.push_back({{}, first_slave + cell_start_[cell], first_slave + cell_start_[cell + 1]});
+            cells_.push_back(
+                {{}, first_slave + cell_start_[cell], first_slave + cell_start_[cell + 1]});
             base.push_back(cell);
         }
     slave_corner_.resize(first_slave + slave_order_.size());
@@ -125,11 +130,15 @@ void CornerMap::rebuild_body(const Field& corners, const BodyRange& body, int in
     dof_body_.resize(n_dofs(), index);
     dof_position_.resize(n_dofs());
     for (std::size_t k = 0; k < base.size(); ++k) {
-        const Vec3p cell = box.low + Vec3p{double(base[k] % n[0]), double(base[k] / n[0] % n[1]),
-                                           double(base[k] / (n[0] * n[1])), 0};
+        const Vec3p cell = box.low
+                           + Vec3p{double(base[k] % n[0]),
+                                   double(base[k] / n[0] % n[1]),
+                                   double(base[k] / (n[0] * n[1])),
+                                   0};
         for (int a = 0; a < 8; ++a)
             dof_position_[cells_[first_new_cell + k].nodes[a]] =
-                (cell + Vec3p{double(a & 1), double(a >> 1 & 1), double(a >> 2), 0}) * body.cell_size;
+                (cell + Vec3p{double(a & 1), double(a >> 1 & 1), double(a >> 2), 0})
+                * body.cell_size;
     }
 }
 
@@ -144,7 +153,8 @@ void CornerMap::number_nodes(const std::array<int, 3>& n_cells_per_axis,
         const int cell = first_new_cell + static_cast<int>(k);
         const int i = base[k] % nx, j = base[k] / nx % ny, l = base[k] / (nx * ny);
         for (int a = 0; a < 8; ++a) {
-            int& node = node_of[i + (a & 1) + stride_y * (j + (a >> 1 & 1)) + stride_z * (l + (a >> 2))];
+            int& node = node_of[i + (a & 1) + stride_y * (j + (a >> 1 & 1))
+                                + stride_z * (l + (a >> 2))];
             if (node < 0) {
                 node = n_nodes_++;
                 node_sources_.push_back({-1, -1, -1, -1, -1, -1, -1, -1});
@@ -166,8 +176,9 @@ void CornerMap::apply(const Field& q, Field& u) const {
                 v[a] = q[cell.nodes[a]];
             for (int s = cell.begin; s < cell.end; ++s) {
                 const auto& w = slave_weights_[s];
-                u[slave_corner_[s]] = ((w[0] * v[0] + w[1] * v[1]) + (w[2] * v[2] + w[3] * v[3]))
-                                      + ((w[4] * v[4] + w[5] * v[5]) + (w[6] * v[6] + w[7] * v[7]));
+                u[slave_corner_[s]] =
+                    ((w[0] * v[0] + w[1] * v[1]) + (w[2] * v[2] + w[3] * v[3]))
+                    + ((w[4] * v[4] + w[5] * v[5]) + (w[6] * v[6] + w[7] * v[7]));
             }
         }
     });

@@ -20,12 +20,13 @@ double dot_product(const Field& a, const Field& b) {
 }  // namespace
 
 double scaled_norm(const Field& g, const Field& d) {
-    const double squared = sum_chunks(static_cast<int>(g.size()), chunk, [&](int begin, int end) {
-        Vec3p sum{};
-        for (int i = begin; i < end; ++i)
-            sum += g[i] * g[i] * d[i];
-        return sum[0] + sum[1] + sum[2];
-    });
+    const double squared =
+        sum_chunks(static_cast<int>(g.size()), chunk, [&](int begin, int end) {
+            Vec3p sum{};
+            for (int i = begin; i < end; ++i)
+                sum += g[i] * g[i] * d[i];
+            return sum[0] + sum[1] + sum[2];
+        });
     return __builtin_sqrt(squared);
 }
 

@@ -10,8 +10,9 @@ namespace sim {
 namespace {
 
 constexpr int chunk = 8192;
-constexpr double armijo = 1e-4;        // share of the predicted decrease that a step must bring
-constexpr double value_noise = 1e-13;  // relative rounding of W: no decrease below it can be seen
+constexpr double armijo = 1e-4;  // share of the predicted decrease that a step must bring
+constexpr double value_noise =
+    1e-13;  // relative rounding of W: no decrease below it can be seen
 constexpr int max_halvings = 30;
 
 double slope(const Field& gradient, const Field& step) {
@@ -24,7 +25,10 @@ double slope(const Field& gradient, const Field& step) {
 }
 
 /// How accurate a linear solve is worth being (Eisenstat and Walker's idea, bounded by the goal).
-double forcing(const NewtonOptions& options, int iteration, double residual, double residual_before) {
+double forcing(const NewtonOptions& options,
+               int iteration,
+               double residual,
+               double residual_before) {
     const double goal = 0.3 * options.tolerance / residual;
     if (iteration == 0)
         return std::clamp(options.first_forcing, goal, 0.3);
@@ -33,7 +37,8 @@ double forcing(const NewtonOptions& options, int iteration, double residual, dou
 }
 
 /// Backtracks from the full step until W decreases enough. Returns the step length, 0 where none does.
-double search_line(Potential& potential, const Field& q, double value, NewtonScratch& s, double& trial_value) {
+double search_line(
+    Potential& potential, const Field& q, double value, NewtonScratch& s, double& trial_value) {
     const int n = static_cast<int>(q.size());
     const double descent = slope(s.gradient, s.step);
     s.trial.resize(n);
@@ -68,7 +73,10 @@ std::string to_string(Termination termination) {
     return {};
 }
 
-NewtonSummary minimize(Potential& potential, const NewtonOptions& options, Field& q, NewtonScratch& s) {
+NewtonSummary minimize(Potential& potential,
+                       const NewtonOptions& options,
+                       Field& q,
+                       NewtonScratch& s) {
     NewtonSummary summary;
     const int n = static_cast<int>(q.size());
     s.gradient.resize(n);
@@ -88,7 +96,8 @@ NewtonSummary minimize(Potential& potential, const NewtonOptions& options, Field
         const double norm = scaled_norm(s.gradient, potential.inverse_diagonal());
         summary.residual = scale > 0 ? norm / scale : 0;
         if (!(norm > goal)) {
-            summary.termination = std::isfinite(norm) ? Termination::Converged : Termination::NotFinite;
+            summary.termination =
+                std::isfinite(norm) ? Termination::Converged : Termination::NotFinite;
             return summary;
         }
         if (summary.iterations == options.max_iterations) {
@@ -100,15 +109,24 @@ NewtonSummary minimize(Potential& potential, const NewtonOptions& options, Field
         if (!linearized)
             potential.linearize(q, project);
         linearized = false;
-        const double linear_tolerance = forcing(options, summary.iterations, summary.residual, residual_before);
-        LinearSummary linear = solve_linear(
-            potential, s.gradient, linear_tolerance, options.max_linear_iterations, s.step, s.linear);
+        const double linear_tolerance =
+            forcing(options, summary.iterations, summary.residual, residual_before);
+        LinearSummary linear = solve_linear(potential,
+                                            s.gradient,
+                                            linear_tolerance,
+                                            options.max_linear_iterations,
+                                            s.step,
+                                            s.linear);
         summary.linear_iterations += linear.iterations;
         if (linear.negative_curvature && !project) {
             project = true;
             potential.linearize(q, project);
-            linear = solve_linear(
-                potential, s.gradient, linear_tolerance, options.max_linear_iterations, s.step, s.linear);
+            linear = solve_linear(potential,
+                                  s.gradient,
+                                  linear_tolerance,
+                                  options.max_linear_iterations,
+                                  s.step,
+                                  s.linear);
             summary.linear_iterations += linear.iterations;
         }
         if (!linear.converged) {
@@ -124,7 +142,8 @@ NewtonSummary minimize(Potential& potential, const NewtonOptions& options, Field
             ++summary.iterations;
             value = potential.value_and_gradient(q, s.gradient);
             summary.residual = scaled_norm(s.gradient, potential.inverse_diagonal()) / scale;
-            summary.termination = std::isfinite(value) ? Termination::Converged : Termination::NotFinite;
+            summary.termination =
+                std::isfinite(value) ? Termination::Converged : Termination::NotFinite;
             return summary;
         }
         const double length = search_line(potential, q, value, s, trial_value);
