@@ -88,11 +88,12 @@ NewtonSummary minimize(Potential& potential,
     // Norms are taken with the last linearisation: the first one is needed before anything can be judged.
     bool project = false, linearized = true;
     potential.linearize(q, project);
-    const double scale = potential.gradient_scale();
-    const double goal = std::max(options.tolerance * scale, potential.gradient_noise());
+    double scale = 0;
     double residual_before = 0;
     for (;; ++summary.iterations) {
-        // The gradient is small enough?
+        // The gradient is small enough? Forces may appear on the way, as contact does: the largest met is the scale.
+        scale = std::max(scale, potential.gradient_scale());
+        const double goal = std::max(options.tolerance * scale, potential.gradient_noise());
         const double norm = scaled_norm(s.gradient, potential.inverse_diagonal());
         summary.residual = scale > 0 ? norm / scale : 0;
         if (!(norm > goal)) {

@@ -3,11 +3,11 @@
 #include "sim/simulation.h"
 #include "tests/support/bar_scene.h"
 
-#include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
 #include <ctime>
+#include <fmt/format.h>
 #include <string>
 #include <vector>
 
@@ -54,14 +54,16 @@ Timing time_method(sim::Method method) {
 int main(int argc, char** argv) {
     const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
     const std::vector<std::string> asked(argv + 1, argv + argc);
-    fmt::print("method,domains,dt_ms,best_ms_per_step,mean_ms_per_step,newton_per_step,cg_per_step\n");
+    fmt::print(
+        "method,domains,dt_ms,best_ms_per_step,mean_ms_per_step,newton_per_step,cg_per_step\n");
     for (const auto& [name, method] : {std::pair{"enriched", sim::Method::Enriched},
                                        std::pair{"fem", sim::Method::Fem},
                                        std::pair{"domains", sim::Method::Domains}}) {
         if (!asked.empty() && std::find(asked.begin(), asked.end(), name) == asked.end())
             continue;
         const Timing t = time_method(method);
-        fmt::print("{},931,1,{:.4f},{:.4f},{:.2f},{:.2f}\n", name, t.best, t.mean, t.newton, t.cg);
+        fmt::print(
+            "{},931,1,{:.4f},{:.4f},{:.2f},{:.2f}\n", name, t.best, t.mean, t.newton, t.cg);
     }
     return 0;
 }

@@ -91,7 +91,8 @@ TEST_CASE("C1 sudden gravity: the first peak is within 1% in height and time", "
     CHECK(peak.time == Approx(layers == Layers::S ? 0.2336 : 0.1358).epsilon(0.01));
 }
 
-TEST_CASE("C1 sudden gravity: enriched is within 2% of fem at the same resolution and step", "[enriched]") {
+TEST_CASE("C1 sudden gravity: enriched is within 2% of fem at the same resolution and step",
+          "[enriched]") {
     tests::BarOptions options = bar(Layers::S, 6);
     options.solver.dt = GENERATE(1e-3, 1.0 / 240);
     const Peak fem = first_peak(options, 0.4);

@@ -17,8 +17,9 @@ struct Named {
     sim::Method method;
 };
 
-const Named methods[] = {
-    {"fem", sim::Method::Fem}, {"enriched", sim::Method::Enriched}, {"domains", sim::Method::Domains}};
+const Named methods[] = {{"fem", sim::Method::Fem},
+                         {"enriched", sim::Method::Enriched},
+                         {"domains", sim::Method::Domains}};
 
 /// A free disc of two materials (D4 of the reference problems), ten domains across, moving and turning.
 sim::Scene disc(sim::Method method, const Vec3& velocity, const Vec3& spin) {
@@ -54,7 +55,8 @@ double total_energy(const sim::Stats& stats) {
 
 }  // namespace
 
-TEST_CASE("free flight keeps mass and momentum, and creates no elastic energy", "[conservation]") {
+TEST_CASE("free flight keeps mass and momentum, and creates no elastic energy",
+          "[conservation]") {
     for (const auto& [name, method] : methods) {
         INFO(name);
         sim::Simulation simulation(disc(method, {3, 1, 0.5}, {0, 0, 0}), frame_time);
@@ -64,26 +66,30 @@ TEST_CASE("free flight keeps mass and momentum, and creates no elastic energy", 
             simulation.advance_to(0.05 * k);
             const sim::Stats now = simulation.stats();
             CHECK(std::abs(now.total_mass / start.total_mass - 1) < 1e-12);
-            CHECK((now.linear_momentum - start.linear_momentum).norm() < 1e-9 * start.linear_momentum.norm());
+            CHECK((now.linear_momentum - start.linear_momentum).norm()
+                  < 1e-9 * start.linear_momentum.norm());
             // Nothing but the rounding of the laws at rest, some 1e-16 E V (E = 1e6 Pa, V = 0.0785 m³).
             CHECK(std::abs(now.elastic_energy) < 1e-14 * 1e6 * 0.0785);
         }
     }
 }
 
-TEST_CASE("a spinning disc keeps its momentum, gains no energy, and loses little spin", "[conservation]") {
+TEST_CASE("a spinning disc keeps its momentum, gains no energy, and loses little spin",
+          "[conservation]") {
     for (const auto& [name, method] : methods) {
         INFO(name);
         sim::Simulation simulation(disc(method, {0.3, 0, 0}, {0, 0, 2 * pi}), frame_time);
         const sim::Stats start = simulation.stats();
         simulation.advance_to(1);  // one revolution
         const sim::Stats now = simulation.stats();
-        CHECK((now.linear_momentum - start.linear_momentum).norm() < 1e-9 * start.linear_momentum.norm());
+        CHECK((now.linear_momentum - start.linear_momentum).norm()
+              < 1e-9 * start.linear_momentum.norm());
         CHECK(total_energy(now) <= total_energy(start));
         // Backward Euler takes (w dt)² of the angular momentum per step: 3.9% in a revolution of 1000 steps.
         const double kept = now.angular_momentum.z() / start.angular_momentum.z();
         const double backward_euler = std::pow(1 - std::pow(2 * pi * 1e-3, 2), 1000);
-        WARN(name << " keeps " << kept << " of its angular momentum in a revolution of 1000 steps");
+        WARN(name << " keeps " << kept
+                  << " of its angular momentum in a revolution of 1000 steps");
         CHECK(kept > backward_euler - 0.01);
         CHECK(kept < 1);
     }
@@ -97,7 +103,8 @@ TEST_CASE("free fall is g t (t + dt) / 2 in every method", "[conservation]") {
         scene.probes.push_back({"centre", "disc", Vec3(0, 0, 0)});
         sim::Simulation simulation(scene, frame_time);
         simulation.advance_to(0.4);
-        CHECK(simulation.probes()[0].position.z() == Approx(-10 * 0.4 * 0.401 / 2).epsilon(1e-10));
+        CHECK(simulation.probes()[0].position.z()
+              == Approx(-10 * 0.4 * 0.401 / 2).epsilon(1e-10));
     }
 }
 

@@ -61,13 +61,13 @@ TEST_CASE(
     scene.solver.damping = 2;
     scene.bodies.push_back(cube("cube", {-0.1, -0.1, 0.05}, 0.2, 4, 1e5));
     scene.forces.push_back(sim::Gravity{{0, 0, -10}});
-    const sim::Friction stick{true, 0};
+    const sim::Friction rough{false, 0.3};
     if (which == 0)
-        scene.colliders.push_back({sim::PlaneShape{{0, 0, 0}, {0, 0, 1}}, stick});
+        scene.colliders.push_back({sim::PlaneShape{{0, 0, 0}, {0, 0, 1}}, rough});
     else if (which == 1)
-        scene.colliders.push_back({assets::Sphere{{0, 0, -1}, 1}, stick});
+        scene.colliders.push_back({assets::Sphere{{0, 0, -1}, 1}, rough});
     else
-        scene.colliders.push_back({assets::Box{{-1, -1, -1}, {1, 1, 0}}, stick});
+        scene.colliders.push_back({assets::Box{{-1, -1, -1}, {1, 1, 0}}, rough});
     scene.probes.push_back({"foot", "cube", Vec3(0, 0, 0.05)});
     sim::Simulation simulation(scene, frame_time);
     double highest = energy(simulation.stats());
