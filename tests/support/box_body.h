@@ -37,7 +37,9 @@ inline sim::Body body_of(const assets::Shape& shape, double domain_size) {
 }
 
 /// n[0] × n[1] × n[2] domains of edge s with the lowest corner at `low`.
-inline sim::Body box_body(const std::array<int, 3>& n, double s, const Vec3& low = Vec3::Zero()) {
+inline sim::Body box_body(const std::array<int, 3>& n,
+                          double s,
+                          const Vec3& low = Vec3::Zero()) {
     return body_of(assets::Box{low, low + s * Vec3(n[0], n[1], n[2])}, s);
 }
 

@@ -14,7 +14,9 @@ inline double between(Random& random, double low, double high) {
 }
 
 inline Vec3 random_vector(Random& random, double size = 1) {
-    return {between(random, -size, size), between(random, -size, size), between(random, -size, size)};
+    return {between(random, -size, size),
+            between(random, -size, size),
+            between(random, -size, size)};
 }
 
 inline sim::Field random_field(std::size_t n, Random& random, double size = 1) {

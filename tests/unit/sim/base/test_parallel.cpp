@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
-
 #include "sim/base/parallel.h"
 #include "tests/support/threads.h"
+
+#include <catch2/catch.hpp>
 
 #include <atomic>
 #include <cmath>
@@ -38,7 +38,8 @@ TEST_CASE("sums are added chunk by chunk, whatever the number of threads") {
     for (int begin = 0; begin < n; begin += chunk)
         expected += part(begin, std::min(begin + chunk, n));
     for (const int threads : {1, 2}) {
-        const double sum = tests::on_threads(threads, [&] { return sim::sum_chunks(n, chunk, part); });
+        const double sum =
+            tests::on_threads(threads, [&] { return sim::sum_chunks(n, chunk, part); });
         CHECK(sum == expected);
     }
     CHECK(sim::sum_chunks(0, chunk, part) == 0);
