@@ -25,15 +25,15 @@ double slope(const Field& gradient, const Field& step) {
 }
 
 /// How accurate a linear solve is worth being (Eisenstat and Walker's idea, bounded by the goal).
-double forcing(const NewtonOptions& options,
-               int iteration,
-               double residual,
-               double residual_before) {
-    const double goal = 0.3 * options.tolerance / residual;
+double forcing(
+    const NewtonOptions& options, int iteration, double goal, double norm, double norm_before) {
+    if (!options.line_search)
+        return options.tolerance;
+    const double enough = 0.3 * goal / norm;  // < 0.3, as the norm is above the goal
     if (iteration == 0)
-        return std::clamp(options.first_forcing, goal, 0.3);
-    const double ratio = residual / residual_before;
-    return std::max(goal, std::min(0.1, ratio * ratio));
+        return std::clamp(options.first_forcing, enough, 0.3);
+    const double ratio = norm / norm_before;
+    return std::max(enough, std::min(0.1, ratio * ratio));
 }
 
 /// Backtracks from the full step until W decreases enough. Returns the step length, 0 where none does.
@@ -89,13 +89,14 @@ NewtonSummary minimize(Potential& potential,
     bool project = false, linearized = true;
     potential.linearize(q, project);
     double scale = 0;
-    double residual_before = 0;
+    double norm_before = 0;
+    const auto relative = [&](double norm) { return scale > 0 ? norm / scale : norm; };
     for (;; ++summary.iterations) {
         // The gradient is small enough? Forces may appear on the way, as contact does: the largest met is the scale.
         scale = std::max(scale, potential.gradient_scale());
         const double goal = std::max(options.tolerance * scale, potential.gradient_noise());
         const double norm = scaled_norm(s.gradient, potential.inverse_diagonal());
-        summary.residual = scale > 0 ? norm / scale : 0;
+        summary.residual = relative(norm);
         if (!(norm > goal)) {
             summary.termination =
                 std::isfinite(norm) ? Termination::Converged : Termination::NotFinite;
@@ -111,7 +112,7 @@ NewtonSummary minimize(Potential& potential,
             potential.linearize(q, project);
         linearized = false;
         const double linear_tolerance =
-            forcing(options, summary.iterations, summary.residual, residual_before);
+            forcing(options, summary.iterations, goal, norm, norm_before);
         LinearSummary linear = solve_linear(potential,
                                             s.gradient,
                                             linear_tolerance,
@@ -142,7 +143,8 @@ NewtonSummary minimize(Potential& potential,
                 q[i] += s.step[i];
             ++summary.iterations;
             value = potential.value_and_gradient(q, s.gradient);
-            summary.residual = scaled_norm(s.gradient, potential.inverse_diagonal()) / scale;
+            scale = std::max(scale, potential.gradient_scale());
+            summary.residual = relative(scaled_norm(s.gradient, potential.inverse_diagonal()));
             summary.termination =
                 std::isfinite(value) ? Termination::Converged : Termination::NotFinite;
             return summary;
@@ -158,7 +160,7 @@ NewtonSummary minimize(Potential& potential,
             continue;
         }
         value = trial_value;
-        residual_before = summary.residual;
+        norm_before = norm;
         std::swap(q, s.trial);
         std::swap(s.gradient, s.trial_gradient);
     }

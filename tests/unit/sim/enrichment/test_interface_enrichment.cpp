@@ -1,0 +1,109 @@
+#include "assets/base/error.h"
+#include "sim/enrichment/interface_enrichment.h"
+#include "tests/support/box_body.h"
+#include "tests/support/random_fields.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+namespace {
+
+/// A box of n domains of edge s, cut along `axis` into layers that end at these domain counts, of two materials in turn.
+sim::Lattice layered(const std::array<int, 3>& n,
+                     double s,
+                     int axis,
+                     const std::vector<int>& ends) {
+    sim::Body body = tests::box_body(n, s);
+    for (std::size_t k = 0; k < ends.size(); ++k)
+        body.regions.push_back(
+            tests::region(k % 2 ? "hard" : "soft",
+                          tests::behind(ends[k] * s * Vec3::Unit(axis), -Vec3::Unit(axis)),
+                          k % 2 ? 1e6 : 1e5));
+    return sim::make_lattice(body);
+}
+
+sim::Field rest(const sim::Lattice& lattice) {
+    sim::Field corners;
+    for (const Vec3& X : lattice.corner_rest)
+        corners.push_back(sim::padded(X));
+    return corners;
+}
+
+}  // namespace
+
+TEST_CASE("boundary domains are counted as in the paper's table") {
+    // A bar of 19 × 7 × 7 with segments of 6, 7 and 6: two interfaces, two planes of 49 domains each.
+    CHECK(sim::boundary_domains(layered({19, 7, 7}, 0.025, 0, {6, 13})).size() == 196);
+    // A cube of 22³ in five layers: four interfaces, two planes of 484 each.
+    CHECK(sim::boundary_domains(layered({22, 22, 22}, 0.05, 2, {4, 9, 13, 18})).size() == 3872);
+    CHECK(sim::boundary_domains(layered({5, 4, 3}, 0.1, 0, {})).empty());
+}
+
+TEST_CASE("boundary domains touch another region face to face, not edge to edge") {
+    sim::Body body = tests::box_body({3, 3, 3}, 1);
+    body.regions.push_back(
+        tests::region("heart", {assets::Box{{1, 1, 1}, {2, 2, 2}}, {}}, 1e5));
+    const sim::Lattice lattice = sim::make_lattice(body);
+    const std::vector<int> boundary = sim::boundary_domains(lattice);
+    CHECK(boundary.size() == 7);
+    for (const int p : boundary) {
+        const auto& cell = lattice.cell[p];
+        CHECK(std::abs(cell[0] - 1) + std::abs(cell[1] - 1) + std::abs(cell[2] - 1) <= 1);
+    }
+}
+
+TEST_CASE("domains with their centre in the cell of a boundary domain's centre are enriched") {
+    const double s = 0.1, h = GENERATE(0.2, 0.13, 0.5);
+    const Vec3 shift = GENERATE(Vec3(0, 0, 0), Vec3(-7.77, 0.031, 3.003));
+    const sim::Lattice lattice = layered({9, 5, 4}, s, 0, {4});
+    tests::Random random(1);
+    sim::Field corners = rest(lattice);
+    for (sim::Vec3p& x : corners)
+        x += sim::padded(shift + tests::random_vector(random, 0.02));
+
+    std::vector<char> free(corners.size(), 0), expected_free(corners.size(), 0);
+    free[3] = expected_free[3] = 1;  // as a pin would have it
+    sim::InterfaceEnrichment enrichment(lattice, h);
+    enrichment.update(lattice, corners.data(), free.data());
+
+    const auto centre_cell = [&](int p) {
+        Vec3 centre = Vec3::Zero();
+        for (const int c : lattice.corners[p])
+            centre += sim::unpadded(corners[c]) / 8;
+        return Vec3((centre / h).array().floor());
+    };
+    const std::vector<int> boundary = sim::boundary_domains(lattice);
+    int n_enriched = 0;
+    for (int p = 0; p < lattice.n_domains(); ++p) {
+        bool expected = false;
+        for (const int q : boundary)
+            expected |= centre_cell(p) == centre_cell(q);
+        REQUIRE(bool(enrichment.enriched()[p]) == expected);
+        n_enriched += expected;
+        for (const int c : lattice.corners[p])
+            expected_free[c] |= expected;
+    }
+    CHECK(free == expected_free);
+    CHECK(n_enriched >= int(boundary.size()));
+    CHECK(n_enriched < lattice.n_domains());
+}
+
+TEST_CASE("a body of one material is never enriched") {
+    const sim::Lattice lattice = layered({3, 1, 1}, 0.1, 0, {});
+    const sim::Field corners = rest(lattice);
+    std::vector<char> free(corners.size(), 0);
+    sim::InterfaceEnrichment enrichment(lattice, 0.2);
+    enrichment.update(lattice, corners.data(), free.data());
+    CHECK(free == std::vector<char>(corners.size(), 0));
+    CHECK(enrichment.enriched() == std::vector<char>(3, 0));
+}
+
+TEST_CASE("a layered body that has flown apart is an error") {
+    const sim::Lattice lattice = layered({2, 1, 1}, 0.1, 0, {1});
+    sim::Field corners = rest(lattice);
+    corners[0] = sim::Vec3p{1e300, 0, 0, 0};
+    std::vector<char> free(corners.size(), 0);
+    sim::InterfaceEnrichment enrichment(lattice, 0.2);
+    CHECK_THROWS_AS(enrichment.update(lattice, corners.data(), free.data()), assets::Error);
+}
