@@ -6,13 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sim {
 
 namespace {
 
-constexpr double slip_speed = 1e-3;        // [m/s]
-constexpr double stick_coefficient = 1e2;  // Coulomb coefficient that stands for "never slides"
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double slip_speed = 1e-3;  // [m/s]
 
 struct Distance {
     double gap = 0;
@@ -37,7 +38,7 @@ Distance distance_to(const assets::Box& box, const Vec3& x) {
     if (length > 0)
         return {length, r / length};
     // Inside: out through the nearest face.
-    Distance inside{-std::numeric_limits<double>::infinity(), {}};
+    Distance inside{-infinity, {}};
     for (int k = 0; k < 3; ++k)
         for (const double side : {-1.0, 1.0}) {
             const double gap = side > 0 ? x[k] - box.max[k] : box.min[k] - x[k];
@@ -47,8 +48,8 @@ Distance distance_to(const assets::Box& box, const Vec3& x) {
     return inside;
 }
 
-double coefficient(const Friction& friction) {
-    return friction.stick ? stick_coefficient : friction.coefficient;
+Vec3 tangential(const Vec3& u, const Vec3& normal) {
+    return u - normal * normal.dot(u);
 }
 
 }  // namespace
@@ -56,7 +57,7 @@ double coefficient(const Friction& friction) {
 ColliderContact::ColliderContact(std::vector<Collider> colliders,
                                  std::vector<ContactCorner> corners)
     : colliders_(std::move(colliders)), corners_(std::move(corners)) {
-    lagged_normal_force_.assign(colliders_.size() * corners_.size(), 0.0);
+    grips_.resize(colliders_.size() * corners_.size());
 }
 
 template <class Visit>
@@ -70,14 +71,9 @@ void ColliderContact::for_touching(const Field& x, const Visit& visit) const {
                 std::visit([&](const auto& shape) { return distance_to(shape, position); },
                            colliders_[j].shape);
             const double depth = std::max(0.0, -(distance.gap + corner.outside));
-            const double friction_force =
-                coefficient(colliders_[j].friction) * lagged_normal_force_[pair];
-            if (depth > 0 || friction_force > 0)
-                visit(Touch{corner.corner,
-                            corner.stiffness,
-                            distance.normal,
-                            depth,
-                            friction_force},
+            const Grip& grip = grips_[pair];
+            if (depth > 0 || grip.force > 0)
+                visit(Touch{corner.corner, corner.stiffness, distance.normal, depth, grip},
                       pair);
         }
     }
@@ -87,12 +83,18 @@ void ColliderContact::begin_step(const Field& x_n, double dt) {
     if (empty())
         return;
     x_n_ = x_n;
-    slip_length_ = slip_speed * dt;
-    std::vector<double> force(lagged_normal_force_.size(), 0.0);
-    for_touching(x_n, [&](const Touch& touch, std::size_t pair) {
-        force[pair] = touch.stiffness * touch.depth;
-    });
-    lagged_normal_force_ = std::move(force);
+    std::vector<Grip> grips(grips_.size());
+    const double slip_length = slip_speed * dt;
+    if (slip_length > 0)
+        for_touching(x_n, [&](const Touch& touch, std::size_t pair) {
+            const Friction& friction = colliders_[pair % colliders_.size()].friction;
+            const double force = friction.coefficient * touch.stiffness * touch.depth;
+            if (touch.depth > 0 && friction.stick)
+                grips[pair] = {touch.normal, infinity, infinity, touch.stiffness};
+            else if (force > 0)
+                grips[pair] = {touch.normal, force, slip_length, force / slip_length};
+        });
+    grips_ = std::move(grips);
 }
 
 double ColliderContact::add_gradient(const Field& x, Field& gradient) const {
@@ -100,15 +102,17 @@ double ColliderContact::add_gradient(const Field& x, Field& gradient) const {
         return 0;
     double energy = 0;
     for_touching(x, [&](const Touch& touch, std::size_t) {
+        const Grip& grip = touch.grip;
         energy += touch.stiffness / 2 * touch.depth * touch.depth;
         Vec3 g = -touch.stiffness * touch.depth * touch.normal;
-        if (touch.friction_force > 0 && slip_length_ > 0) {
-            const Vec3 u = unpadded(x[touch.corner] - x_n_[touch.corner]);
-            const Vec3 slip = u - touch.normal * touch.normal.dot(u);
+        if (grip.force > 0) {
+            const Vec3 slip =
+                tangential(unpadded(x[touch.corner] - x_n_[touch.corner]), grip.normal);
             const double y = slip.norm();
-            energy += touch.friction_force
-                      * (y < slip_length_ ? y * y / (2 * slip_length_) : y - slip_length_ / 2);
-            g += touch.friction_force / std::max(y, slip_length_) * slip;
+            const bool holds = y < grip.slip_length;
+            energy +=
+                holds ? grip.stiffness / 2 * y * y : grip.force * (y - grip.slip_length / 2);
+            g += (holds ? grip.stiffness : grip.force / y) * slip;
         }
         gradient[touch.corner] += padded(g);
     });
@@ -120,18 +124,18 @@ void ColliderContact::linearize(const Field& x) {
     if (empty())
         return;
     for_touching(x, [&](const Touch& touch, std::size_t) {
+        const Grip& grip = touch.grip;
         Mat3 H = Mat3::Zero();
         if (touch.depth > 0)
             H += touch.stiffness * touch.normal * touch.normal.transpose();
-        if (touch.friction_force > 0 && slip_length_ > 0) {
-            const Mat3 tangential = Mat3::Identity() - touch.normal * touch.normal.transpose();
-            const Vec3 slip = tangential * unpadded(x[touch.corner] - x_n_[touch.corner]);
+        if (grip.force > 0) {
+            const Mat3 P = Mat3::Identity() - grip.normal * grip.normal.transpose();
+            const Vec3 slip = P * unpadded(x[touch.corner] - x_n_[touch.corner]);
             const double y = slip.norm();
-            if (y < slip_length_)
-                H += touch.friction_force / slip_length_ * tangential;
+            if (y < grip.slip_length)
+                H += grip.stiffness * P;
             else
-                H +=
-                    touch.friction_force / y * (tangential - slip * slip.transpose() / (y * y));
+                H += grip.force / y * (P - slip * slip.transpose() / (y * y));
         }
         blocks_.push_back({touch.corner, H});
     });

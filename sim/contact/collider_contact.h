@@ -10,8 +10,8 @@ namespace sim {
 
 /// A corner that may touch: those on the surface of a body.
 struct ContactCorner {
-    int corner = 0;        // in the field of all corners
-    double outside = 0;    // distance that it sticks out of the body's surface at rest, >= 0 [m]
+    int corner = 0;      // in the field of all corners
+    double outside = 0;  // distance that it sticks out of the body's surface at rest, >= 0 [m]
     double stiffness = 0;  // k of the penalty [N/m]
 };
 
@@ -19,10 +19,11 @@ struct ContactCorner {
 ///
 ///   k/2 d² + mu N D(|u_t|),   d = max(0, -(gap + outside)),   D(y) = y²/(2 e) for y < e, else y - e/2
 ///
-/// d [m] is the penetration of the body's surface, u_t the tangential displacement in the step, N = k d the normal
-/// force at the start of the step (lagged, which makes friction a potential), e = slip_speed dt the displacement below
-/// which friction holds elastically instead of sliding. k = contact_stiffness E s leaves a depth p s / (k / s) under a
-/// pressure p, i.e. less than a thousandth of a domain for bodies that carry their own weight.
+/// d [m] is the penetration of the body's surface, u_t the displacement in the step along the tangent plane of its
+/// start, N = k d the normal force there (both lagged, which makes friction a convex potential), e = slip_speed dt the
+/// displacement below which friction holds elastically instead of sliding. Friction "stick" holds what touched at the
+/// start of the step like a spring, k/2 |u_t|², which no force makes slide. k = contact_stiffness E s leaves a depth
+/// p s / (k / s) under a pressure p, i.e. less than a thousandth of a domain for bodies that carry their own weight.
 class ColliderContact {
   public:
     ColliderContact(std::vector<Collider> colliders, std::vector<ContactCorner> corners);
@@ -45,12 +46,20 @@ class ColliderContact {
     void add_diagonal(Field& diagonal) const;
 
   private:
+    /// Friction of a corner on a collider, fixed at the start of a step.
+    struct Grip {
+        Vec3 normal{0, 0, 1};
+        double force = 0;  // that slipping meets, infinite: sticks, 0: nothing touched [N]
+        double slip_length = 0;  // e [m]
+        double stiffness = 0;    // below e [N/m]
+    };
+
     struct Touch {
         int corner = 0;
-        double stiffness = 0;          // k of the penalty, 0: friction alone [N/m]
+        double stiffness = 0;  // k of the penalty [N/m]
         Vec3 normal{0, 0, 1};
-        double depth = 0;              // d
-        double friction_force = 0;     // mu N of the step's start [N]
+        double depth = 0;  // d [m]
+        const Grip& grip;
     };
 
     template <class Visit>
@@ -58,9 +67,8 @@ class ColliderContact {
 
     std::vector<Collider> colliders_;
     std::vector<ContactCorner> corners_;
-    std::vector<double> lagged_normal_force_;  // (#corners × #colliders) N [N]
+    std::vector<Grip> grips_;  // (#corners × #colliders)
     Field x_n_;
-    double slip_length_ = 0;  // e [m]
 
     struct Block {
         int corner = 0;

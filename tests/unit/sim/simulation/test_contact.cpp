@@ -36,19 +36,24 @@ TEST_CASE("a block on a slope of 30 degrees slides (g sin - mu g cos) t²/2, or 
     // The slope is a level plane under tilted gravity. tan 30° = 0.577. The block is stiff: a soft one sticks at first,
     // while it shears, and runs ahead of the formula by that.
     const double g = 9.81, angle = 3.14159265358979323846 / 6;
-    const double friction = GENERATE(0.0, 0.2, 0.4, 0.7);
+    const sim::Friction friction = GENERATE(sim::Friction{false, 0.0},
+                                            sim::Friction{false, 0.2},
+                                            sim::Friction{false, 0.4},
+                                            sim::Friction{false, 0.7},
+                                            sim::Friction{true, 0});
     sim::Scene scene;
     scene.solver.method = sim::Method::Fem;
-    scene.solver.dt = 0.5e-3;  // friction follows the normal force of the step before: first order in dt
+    scene.solver.dt =
+        0.5e-3;  // friction follows the normal force of the step before: first order in dt
     scene.bodies.push_back(cube("block", {0, 0, 0}, 0.2, 2, 1e7));
     scene.forces.push_back(sim::Gravity{{g * std::sin(angle), 0, -g * std::cos(angle)}});
-    scene.colliders.push_back({sim::PlaneShape{{0, 0, 0}, {0, 0, 1}}, {false, friction}});
+    scene.colliders.push_back({sim::PlaneShape{{0, 0, 0}, {0, 0, 1}}, friction});
     scene.probes.push_back({"centre", "block", Vec3(0.1, 0.1, 0.1)});
     sim::Simulation simulation(scene, frame_time);
     simulation.advance_to(1);
     const double slid = simulation.probes()[0].position.x() - 0.1;
-    const double expected =
-        std::max(0.0, g * std::sin(angle) - friction * g * std::cos(angle)) / 2;
+    const double mu = friction.stick ? 1 : friction.coefficient;
+    const double expected = std::max(0.0, g * std::sin(angle) - mu * g * std::cos(angle)) / 2;
     CHECK(slid == Approx(expected).epsilon(0.01).margin(2e-3));  // sticking creeps below 1 mm/s
 }
 
@@ -61,7 +66,7 @@ TEST_CASE(
     scene.solver.damping = 2;
     scene.bodies.push_back(cube("cube", {-0.1, -0.1, 0.05}, 0.2, 4, 1e5));
     scene.forces.push_back(sim::Gravity{{0, 0, -10}});
-    const sim::Friction rough{false, 0.3};
+    const sim::Friction rough = GENERATE(sim::Friction{false, 0.3}, sim::Friction{true, 0});
     if (which == 0)
         scene.colliders.push_back({sim::PlaneShape{{0, 0, 0}, {0, 0, 1}}, rough});
     else if (which == 1)

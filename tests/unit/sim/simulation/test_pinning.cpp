@@ -1,0 +1,85 @@
+#include "sim/pinning.h"
+#include "tests/support/bar_scene.h"
+
+#include <catch2/catch.hpp>
+
+namespace {
+
+constexpr double quarter_turn = 3.14159265358979323846 / 2;
+
+sim::Pin end_pin(double x_max, std::array<bool, 3> only) {
+    sim::Pin pin;
+    pin.name = "end";
+    pin.body = "bar";
+    pin.select.is = sim::Selector::HalfSpace{{x_max, 0, 0}, {1, 0, 0}};
+    pin.only = only;
+    return pin;
+}
+
+/// A bar of 4 x 1 x 1 domains of 0.1 m: planes of four corners at x = 0, 0.1 ... 0.4.
+sim::Scene short_bar(std::vector<sim::Pin> pins) {
+    tests::BarOptions options;
+    options.n_domains = {4, 1, 1};
+    options.segment_ends = {1, 3};
+    options.domain_size = 0.1;
+    sim::Scene scene = tests::bar_scene(options);
+    scene.pins = std::move(pins);
+    return scene;
+}
+
+int count_held(const sim::Prescribed& prescribed, int axis) {
+    int n = 0;
+    for (const sim::Vec3p& is_free : prescribed.is_free)
+        n += is_free[axis] == 0;
+    return n;
+}
+
+}  // namespace
+
+TEST_CASE("a pin stands still, moves evenly, or turns about its axis") {
+    sim::Pin pin;
+    const Vec3 X(1, 2, 3);
+    CHECK(sim::pinned_position(pin, X, 5) == X);
+    pin.moves = sim::Pin::Velocity{{1, 0, -2}};
+    CHECK(sim::pinned_position(pin, X, 0.5) == Vec3(1.5, 2, 2));
+    // A right-handed quarter turn about z through (1, 0, 0) takes y to -x; the axis need not be a unit vector.
+    pin.moves = sim::Pin::Spin{{0, 0, 4}, {1, 0, 0}, quarter_turn};
+    CHECK((sim::pinned_position(pin, X, 1) - Vec3(-1, 0, 3)).norm() < 1e-15);
+}
+
+TEST_CASE("later pins win, axis by axis") {
+    sim::Pin wall = end_pin(0.15, {true, true, true}),
+             slide = end_pin(0.05, {false, false, true});
+    slide.moves = sim::Pin::Velocity{{7, 7, 1}};
+    const sim::Scene scene = short_bar({wall, slide});
+    const sim::Assembly assembly(scene);
+    const sim::Prescribed prescribed = sim::prescribe(scene, assembly, 0, 0.25);
+    CHECK(prescribed.corners.size() == 8);  // the planes x = 0 and 0.1
+    CHECK(std::is_sorted(prescribed.corners.begin(), prescribed.corners.end()));
+    for (int axis = 0; axis < 3; ++axis)
+        CHECK(count_held(prescribed, axis) == 8);
+    for (int c = 0; c < assembly.n_corners(); ++c) {
+        const Vec3 rest = sim::unpadded(assembly.rest[c]);
+        const bool at_end = rest.x() < 0.05, is_held = rest.x() < 0.15;
+        CHECK(prescribed.holder[c] == (at_end ? 1 : is_held ? 0 : -1));
+        const Vec3 target = rest + Vec3(0, 0, at_end ? 0.25 : 0);
+        CHECK((sim::unpadded(prescribed.target[c]) - target).norm() == 0);
+    }
+}
+
+TEST_CASE("a pin holds the chosen axes, to the moment of its release") {
+    sim::Pin pin = end_pin(0.05, {false, true, false});
+    pin.moves = sim::Pin::Velocity{{0, 2, 0}};
+    pin.until = 1;
+    const sim::Scene scene = short_bar({pin});
+    const sim::Assembly assembly(scene);
+    const sim::Prescribed during = sim::prescribe(scene, assembly, 0, 0.5);
+    CHECK(count_held(during, 0) == 0);
+    CHECK(count_held(during, 1) == 4);
+    // A step across the release ends where the pin let go; the next one is free.
+    const sim::Prescribed across = sim::prescribe(scene, assembly, 0.9, 1.1);
+    REQUIRE(across.corners.size() == 4);
+    const int c = across.corners[0];
+    CHECK(across.target[c][1] == Approx(assembly.rest[c][1] + 2));
+    CHECK(sim::prescribe(scene, assembly, 1, 1.1).corners.empty());
+}
