@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
 
 namespace sim {
 
@@ -17,6 +18,15 @@ constexpr double contact_stiffness =
 double young_modulus(const Lattice& lattice, int p) {
     const double mu = lattice.mu[p], lambda = lattice.lambda[p];
     return mu * (3 * lambda + 2 * mu) / (lambda + mu);
+}
+
+/// A domain's stiffness on its corners is V Bᵀ C B with B Bᵀ = 1/(2s²), C at most 3λ+2μ, over an eighth of its mass for
+/// each corner: w² <= 4 (3λ+2μ)/(rho s²), and no assembly of domains swings faster than its fastest one (Irons).
+double highest_frequency(const Lattice& lattice) {
+    double most = 0;
+    for (int p = 0; p < lattice.n_domains(); ++p)
+        most = std::max(most, (3 * lattice.lambda[p] + 2 * lattice.mu[p]) / lattice.density[p]);
+    return 2 * std::sqrt(most) / lattice.edge;
 }
 
 Vec3 centre_of_mass(const Lattice& lattice) {
@@ -39,6 +49,7 @@ AssembledBody::AssembledBody(const Body& body,
       begin(first_corner),
       end(first_corner + lattice.n_corners()),
       cell_size(grid_ratio * lattice.edge),
+      highest_frequency(sim::highest_frequency(lattice)),
       elasticity(lattice, body),
       enrichment(lattice, cell_size) {
     for (const Skin& skin : body.skins)

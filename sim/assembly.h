@@ -19,7 +19,8 @@ namespace sim {
 struct AssembledBody {
     Lattice lattice;
     int begin = 0, end = 0;
-    double cell_size = 0;  // of its background grid [m]
+    double cell_size = 0;          // of its background grid [m]
+    double highest_frequency = 0;  // bound of what its corners swing with at rest [rad/s]
     Elasticity elasticity;
     InterfaceEnrichment enrichment;
     std::vector<EmbeddedSurface> surfaces;

@@ -48,6 +48,10 @@ std::string cause(const Scene& scene, const NewtonSummary& summary, double dt, d
                       : std::string(
                           "the pins move too far between two frames; use more frames, or move "
                           "them less");
+    if (summary.termination == Termination::Unstable)
+        return "an explicit step this short is still unstable: a domain is crushed or its "
+               "modulus "
+               "far above its density; try --set solver.steps=implicit";
     return dt > 0 ? fmt::format("the step is too long for the motion; try --set solver.dt={:g}",
                                 dt / 4)
                   : std::string(

@@ -24,13 +24,17 @@ void IncrementalPotential::update_positions(const Field& q) {
     });
 }
 
+double IncrementalPotential::elastic_gradient(const Field& x, Field& gradient) {
+    gradient.resize(x.size());
+    double energy = 0;
+    for (const ElasticBody& body : bodies_)
+        energy += body.elasticity->energy_and_gradient(&x[body.begin], &gradient[body.begin]);
+    return energy;
+}
+
 double IncrementalPotential::value_and_gradient(const Field& q, Field& gradient) {
     update_positions(q);
-    corner_gradient_.resize(x_.size());
-    double value = 0;
-    for (const ElasticBody& body : bodies_)
-        value += body.elasticity->energy_and_gradient(&x_[body.begin],
-                                                      &corner_gradient_[body.begin]);
+    double value = elastic_gradient(x_, corner_gradient_);
     value += colliders_.add_gradient(x_, corner_gradient_);
     if (!std::isfinite(value))
         return value;

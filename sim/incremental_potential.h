@@ -39,6 +39,9 @@ class IncrementalPotential : public Potential {
 
     Step& step() { return step_; }
 
+    /// The bodies' energies at corners x, and their gradient (#C) [N].   [J]
+    double elastic_gradient(const Field& x, Field& gradient);
+
     double value_and_gradient(const Field& q, Field& gradient) override;
     void linearize(const Field& q, bool project) override;
     void hessian_product(const Field& p, Field& product) override;

@@ -23,34 +23,38 @@ Vec3 pinned_position(const Pin& pin, const Vec3& X, double time) {
     return X;
 }
 
-Prescribed prescribe(const Scene& scene,
-                     const Assembly& assembly,
-                     double time_begin,
-                     double time_end) {
-    const int n = assembly.n_corners();
-    Prescribed result;
-    result.is_free.assign(n, Vec3p{1, 1, 1, 0});
-    result.target = assembly.rest;
-    result.holder.assign(n, -1);
+void prescribe(const Scene& scene,
+               const Assembly& assembly,
+               double time_begin,
+               double time_end,
+               Prescribed& prescribed) {
+    auto& [is_free, target, holder, corners] = prescribed;
+    is_free.resize(assembly.n_corners(), Vec3p{1, 1, 1, 0});
+    target.resize(assembly.n_corners());
+    holder.resize(assembly.n_corners(), -1);
+    for (const int c : corners) {
+        is_free[c] = Vec3p{1, 1, 1, 0};
+        holder[c] = -1;
+    }
+    corners.clear();
     for (std::size_t k = 0; k < scene.pins.size(); ++k) {
         const Pin& pin = scene.pins[k];
         if (time_begin > pin.until - time_rounding)
             continue;
         for (const int c : assembly.pins[k].corners) {
-            const Vec3 target =
+            const Vec3 to =
                 pinned_position(pin, unpadded(assembly.rest[c]), std::min(time_end, pin.until));
             for (int axis = 0; axis < 3; ++axis)
                 if (pin.only[axis]) {
-                    result.is_free[c][axis] = 0;
-                    result.target[c][axis] = target[axis];
+                    is_free[c][axis] = 0;
+                    target[c][axis] = to[axis];
                 }
-            if (result.holder[c] < 0)
-                result.corners.push_back(c);
-            result.holder[c] = static_cast<int>(k);
+            if (holder[c] < 0)
+                corners.push_back(c);
+            holder[c] = static_cast<int>(k);
         }
     }
-    std::sort(result.corners.begin(), result.corners.end());
-    return result;
+    std::sort(corners.begin(), corners.end());
 }
 
 }  // namespace sim

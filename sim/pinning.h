@@ -19,10 +19,12 @@ struct Prescribed {
 /// Where the pin moves a corner to by `time`: X, X + v t, or X turned about the axis by rate·t.   [m]
 Vec3 pinned_position(const Pin& pin, const Vec3& X, double time);
 
-/// The pins in force during (time_begin, time_end]. A pin is released after `until`; later pins win, axis by axis.
-Prescribed prescribe(const Scene& scene,
-                     const Assembly& assembly,
-                     double time_begin,
-                     double time_end);
+/// Sets `prescribed` to the pins in force during (time_begin, time_end]; it is empty at first, else of an earlier call.
+/// A pin is released after `until`; later pins win, axis by axis.
+void prescribe(const Scene& scene,
+               const Assembly& assembly,
+               double time_begin,
+               double time_end,
+               Prescribed& prescribed);
 
 }  // namespace sim

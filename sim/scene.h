@@ -15,7 +15,7 @@
 namespace sim {
 
 enum class Method { Domains, Enriched, Fem };
-enum class Steps { SemiImplicit, Implicit, Static };
+enum class Steps { Explicit, SemiImplicit, Implicit, Bdf2, Static };
 enum class Model { NeoHookean, StableNeoHookean, FixedCorotated };
 
 /// A part of a body at rest. Geometric selectors are boolean functions of the rest position; MeshMaterial and

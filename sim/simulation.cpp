@@ -14,8 +14,9 @@ namespace {
 constexpr double steps_per_frame = 10;  // where the shot gives no dt
 
 void append(std::vector<std::byte>& bytes, const void* data, std::size_t size) {
-    const auto* begin = static_cast<const std::byte*>(data);
-    bytes.insert(bytes.end(), begin, begin + size);
+    const std::size_t before = bytes.size();
+    bytes.resize(before + size);
+    std::memcpy(bytes.data() + before, data, size);
 }
 
 }  // namespace
@@ -35,8 +36,15 @@ struct Simulation::Impl {
             stepper.refresh(state);
     }
 
-    /// The arrays of the state, as a checkpoint holds them.
-    std::array<Field*, 3> fields() { return {&state.x, &state.v, &state.inner_impulse}; }
+    /// The arrays of the state, as a checkpoint holds them; those of BDF2 last.
+    std::vector<Field*> fields() {
+        std::vector<Field*> result = {&state.x, &state.v, &state.inner_impulse};
+        if (scene.solver.steps == Steps::Bdf2 && state.last_dt > 0) {
+            result.push_back(&state.x_before);
+            result.push_back(&state.v_before);
+        }
+        return result;
+    }
 
     Scene scene;
     double dt;
@@ -57,12 +65,7 @@ void Simulation::advance_to(double time) {
         stepper.equilibrium(state, time);
         return;
     }
-    const double begin = state.time;
-    const int n = std::max(1, static_cast<int>(std::ceil((time - begin) / dt - 1e-6)));
-    for (int k = 0; k < n; ++k) {
-        stepper.step(state, (time - begin) / n);
-        state.time = k + 1 == n ? time : begin + (time - begin) * (k + 1) / n;
-    }
+    stepper.advance(state, time, dt);
 }
 
 double Simulation::time() const {
@@ -79,6 +82,10 @@ const Lattice& Simulation::lattice(int body) const {
 
 const std::vector<std::string>& Simulation::notes() const {
     return impl_->assembly.notes;
+}
+
+const std::vector<std::string>& Simulation::failures() const {
+    return impl_->stepper.failures;
 }
 
 Stats Simulation::stats() const {
@@ -117,8 +124,9 @@ std::vector<assets::SurfaceFrame> Simulation::deformed_surfaces() const {
 
 std::vector<std::byte> Simulation::checkpoint() const {
     std::vector<std::byte> bytes;
-    append(bytes, &impl_->state.time, sizeof(double));
-    append(bytes, &impl_->state.last_dt, sizeof(double));
+    const State& state = impl_->state;
+    for (const double number : {state.time, state.last_dt, state.dt_limit})
+        append(bytes, &number, sizeof(double));
     for (const Field* field : impl_->fields())
         append(bytes, field->data(), field->size() * sizeof(Vec3p));
     return bytes;
@@ -126,18 +134,19 @@ std::vector<std::byte> Simulation::checkpoint() const {
 
 void Simulation::restore(const std::vector<std::byte>& bytes) {
     State& state = impl_->state;
-    const std::size_t field_size = state.x.size() * sizeof(Vec3p);
-    assets::check(bytes.size() == 2 * sizeof(double) + 3 * field_size,
-                  "checkpoint of another scene");
-    const std::byte* next = bytes.data();
+    std::size_t next = 0;
     const auto take = [&](void* to, std::size_t size) {
-        std::memcpy(to, next, size);
+        assets::check(next + size <= bytes.size(), "checkpoint of another scene");
+        std::memcpy(to, bytes.data() + next, size);
         next += size;
     };
-    take(&state.time, sizeof(double));
-    take(&state.last_dt, sizeof(double));
-    for (Field* field : impl_->fields())
-        take(field->data(), field_size);
+    for (double* number : {&state.time, &state.last_dt, &state.dt_limit})
+        take(number, sizeof(double));
+    for (Field* field : impl_->fields()) {
+        field->resize(state.x.size());
+        take(field->data(), field->size() * sizeof(Vec3p));
+    }
+    assets::check(next == bytes.size(), "checkpoint of another scene");
     impl_->stepper.refresh(state);
 }
 

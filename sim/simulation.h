@@ -44,7 +44,7 @@ class Simulation {
     Simulation(Scene scene, double frame_time);
     ~Simulation();
 
-    /// Steps until `time` in equal steps no longer than dt; `Steps::Static`: equilibrium of the loads then.
+    /// Steps until `time` in steps no longer than dt, halved where they fail; `Steps::Static`: equilibrium of the loads then.
     /// Throws Error(Diverged) naming place, body, region and likely cause.
     void advance_to(double time);
 
@@ -53,6 +53,9 @@ class Simulation {
     const Lattice& lattice(int body) const;
     const std::vector<std::string>& notes()
         const;  // repairs and simplifications to be told to the user
+
+    /// Steps of the last advance_to() that failed and were replaced by shorter ones: place, time and likely cause.
+    const std::vector<std::string>& failures() const;
 
     Stats stats() const;
     std::vector<ProbeRow> probes() const;

@@ -1,44 +1,27 @@
 // A step in time, and an equilibrium: the method itself.
 #pragma once
 
-#include "sim/contact/grid_contact.h"
+#include "sim/assembly.h"
 #include "sim/incremental_potential.h"
 #include "sim/pinning.h"
+#include "sim/rigid_motion.h"
 #include "sim/solver/newton.h"
+#include "sim/state.h"
 
+#include <optional>
 #include <vector>
 
 namespace sim {
 
-/// All that changes, and that later steps depend on. Indexed by corner.
-struct State {
-    double time = 0;  // [s]
-    Field x, v;       // positions [m], velocities [m/s]
-    Field
-        inner_impulse;  // velocity that inner forces and contact gave in the last step, a guess for the next [m/s]
-    double last_dt = 0;  // of that step [s]
-};
-
-/// v(x) = velocity + spin × (x - centre): the rigid motion with a body's linear and angular momentum.
-struct RigidMotion {
-    Vec3p centre{}, velocity{}, spin{};
-
-    Vec3p at(const Vec3p& x) const {
-        const Vec3p r = x - centre;
-        return velocity
-               + Vec3p{spin[1] * r[2] - spin[2] * r[1],
-                       spin[2] * r[0] - spin[0] * r[2],
-                       spin[0] * r[1] - spin[1] * r[0],
-                       0};
-    }
-};
-
+/// Every step sees the state as  x_{n+1} = x^ + dt^ v_{n+1},  v_{n+1} = v^ + dt^ a_{n+1}, carries v^
+/// to the degrees of freedom, solves there, and brings the change back to the corners.
 class Stepper {
   public:
     Stepper(const Scene& scene, Assembly& assembly);
 
-    /// One step of solver.steps from state.time to state.time + dt. Throws Error(Diverged).
-    void step(State& state, double dt);
+    /// Steps by solver.steps until state.time is `end`, in steps no longer than dt, nor than failures and stability
+    /// allow: a step that fails is halved, and grows back slowly. Throws Error(Diverged) where halving does not help.
+    void advance(State& state, double end, double dt);
 
     /// Equilibrium of the loads at `time`, reached from `state` by moving the pins there; velocities become zero.
     /// Where the way is too long for one solve it is halved. Throws Error(Diverged).
@@ -48,6 +31,9 @@ class Stepper {
     void refresh(const State& state);
 
     int newton_iterations = 0, cg_iterations = 0, steps = 0;  // totals
+
+    /// What went wrong in the steps that a shorter one replaced, in words.
+    std::vector<std::string> failures;
 
     /// Mass on the degrees of freedom of the last step [kg], and the forces of the pins on corners (#C) [N].
     double mass_on_dofs() const;
@@ -59,19 +45,42 @@ class Stepper {
     const IncrementalPotential& potential() const { return potential_; }
 
   private:
+    // step_control.cpp
+    bool try_step(State& state, double dt);
+
+    // stepper.cpp: what all steps share
+    void begin_step(const State& state, double dt);
     void choose_free_corners(const Field& x);
-    void transfer(const State& state, double dt);
-    std::vector<RigidMotion> rigid_motions(const State& state) const;
-    void guess(const State& state, double dt);
-    void move(State& state, double dt);
-    void balance_momentum(const State& state, double dt, Field& u) const;
-    void see_on_grid(const Field& u, Field& contact_velocity) const;
-    void set_reactions(const State& state, double dt);
+    void start_scheme(const State& state, double dt);
+
+    struct Motion {
+        Vec3p dx{}, dv{};
+    };
+
+    Motion motion_before(const State& state, double dt, int c) const;
+    void transfer(const State& state);
+    void prescribe_dofs(const State& state);
+    void exchange_contact(const State& state, double dt);
+    void drift(double length);
+    void commit(State& state, double dt);
+
+    // implicit_step.cpp
+    bool try_implicit(State& state, double dt);
+    void guess(const State& state);
+    void balance_momentum();
+    void set_reactions();
+
+    // explicit_step.cpp
+    double explicit_limit(const State& state) const;
+    double seen_frequency(const Field& dx, const Field& dg) const;
+    bool try_explicit(State& state, double dt);
+    void set_explicit_reactions(const State& state, double dt);
+
+    // equilibrium.cpp
     bool try_equilibrium(State& state,
                          double time_begin,
                          double time_end,
                          NewtonSummary& summary);
-    [[noreturn]] void fail(const State& state, double dt, const NewtonSummary& summary);
 
     const Scene& scene_;
     Assembly& assembly_;
@@ -80,10 +89,17 @@ class Stepper {
     ColliderContact colliders_;
     IncrementalPotential potential_;
     NewtonScratch scratch_;
+    NewtonSummary summary_;  // of the last solve
     Prescribed prescribed_;
     std::vector<char> free_;            // (#C)
     std::vector<double> inverse_mass_;  // (#dofs) 0 where there is none [1/kg]
-    Field dof_mass_, q_n_, q_, corner_, reaction_;
+    double dt_hat_ = 0;                 // dt^ of the scheme [s]
+    Field v_hat_;                       // v^ of the scheme (#C) [m/s]
+    Field dof_mass_, q_n_, q_;          // (#dofs)
+    Field moved_;  // (#C) velocity that moves the corners in this step [m/s]
+    Field corner_, reaction_;
+    Field x_end_;                    // (#C) where they end [m]
+    Field gradient_, end_gradient_;  // of explicit steps, at the start and the end (#C) [N]
 };
 
 }  // namespace sim

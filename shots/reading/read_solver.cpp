@@ -28,10 +28,12 @@ sim::SolverOptions read_solver(TableReader table) {
         {"mpm", "auto"},
         "enriched");
     solver.steps = table.choice<Steps>("steps",
-                                       {{"semi_implicit", Steps::SemiImplicit},
+                                       {{"explicit", Steps::Explicit},
+                                        {"semi_implicit", Steps::SemiImplicit},
                                         {"implicit", Steps::Implicit},
+                                        {"bdf2", Steps::Bdf2},
                                         {"static", Steps::Static}},
-                                       {"explicit", "bdf2"},
+                                       {},
                                        "implicit");
     if (solver.steps == Steps::Static && solver.method != Method::Fem)
         table.error(

@@ -52,13 +52,19 @@ void compute_frame(const SimulateJob& job,
                    int index,
                    sim::Simulation& simulation,
                    const SimulationTables& tables,
-                   assets::FrameCacheWriter& cache) {
+                   assets::FrameCacheWriter& cache,
+                   Progress& progress) {
     const int number = job.frames[static_cast<std::size_t>(index)];
     const double time = index / job.fps;
     const auto before = Clock::now();
     if (index > 0 || job.scene.solver.steps == sim::Steps::Static)
         simulation.advance_to(time);
     const double seconds = std::chrono::duration<double>(Clock::now() - before).count();
+    if (const auto& failures = simulation.failures(); !failures.empty())
+        progress.say(fmt::format("frame {}: {} failed steps were halved, the first: {}",
+                                 number,
+                                 failures.size(),
+                                 failures.front()));
 
     tables.append(frame_rows(
         number, time, simulation.stats(), simulation.probes(), simulation.pins(), seconds));
@@ -97,7 +103,7 @@ void simulate(const SimulateJob& job, Progress& progress) {
     progress.start("sim", n_frames, first);
     for (int i = first; i < n_frames; ++i) {
         stop_if_interrupted();
-        compute_frame(job, i, simulation, tables, cache);
+        compute_frame(job, i, simulation, tables, cache, progress);
         progress.advance(fmt::format("frame {}", job.frames[static_cast<std::size_t>(i)]));
     }
     progress.finish();

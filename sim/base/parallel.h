@@ -22,19 +22,20 @@ void for_chunks(int n, int chunk, const Body& body) {
     });
 }
 
-/// Σ of body(begin, end) over the chunks, added in their order.
+/// Σ of body(begin, end) over the chunks, numbers or vectors, added in their order.
 template <class Body>
-double sum_chunks(int n, int chunk, const Body& body) {
+auto sum_chunks(int n, int chunk, const Body& body) {
+    using Sum = decltype(body(0, 0));
     if (n <= chunk)
-        return n > 0 ? body(0, n) : 0.0;
+        return n > 0 ? body(0, n) : Sum{};
     const int n_chunks = (n + chunk - 1) / chunk;
-    std::vector<double> parts(n_chunks);
+    std::vector<Sum> parts(n_chunks);
     tbb::parallel_for(0, n_chunks, [&](int k) {
         const int begin = k * chunk;
         parts[k] = body(begin, begin + chunk < n ? begin + chunk : n);
     });
-    double sum = 0;
-    for (const double part : parts)
+    Sum sum{};
+    for (const Sum& part : parts)
         sum += part;
     return sum;
 }

@@ -2,6 +2,7 @@
 
 #include "assets/generators/shape.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -97,48 +98,67 @@ void ColliderContact::begin_step(const Field& x_n, double dt) {
     grips_ = std::move(grips);
 }
 
+Vec3 ColliderContact::gradient_of(const Touch& touch, const Field& x, double& energy) const {
+    const Grip& grip = touch.grip;
+    energy += touch.stiffness / 2 * touch.depth * touch.depth;
+    Vec3 g = -touch.stiffness * touch.depth * touch.normal;
+    if (grip.force > 0) {
+        const Vec3 slip =
+            tangential(unpadded(x[touch.corner] - x_n_[touch.corner]), grip.normal);
+        const double y = slip.norm();
+        const bool holds = y < grip.slip_length;
+        energy += holds ? grip.stiffness / 2 * y * y : grip.force * (y - grip.slip_length / 2);
+        g += (holds ? grip.stiffness : grip.force / y) * slip;
+    }
+    return g;
+}
+
+Mat3 ColliderContact::hessian_of(const Touch& touch, const Field& x) const {
+    const Grip& grip = touch.grip;
+    Mat3 H = Mat3::Zero();
+    if (touch.depth > 0)
+        H += touch.stiffness * touch.normal * touch.normal.transpose();
+    if (grip.force > 0) {
+        const Mat3 P = Mat3::Identity() - grip.normal * grip.normal.transpose();
+        const Vec3 slip = P * unpadded(x[touch.corner] - x_n_[touch.corner]);
+        const double y = slip.norm();
+        if (y < grip.slip_length)
+            H += grip.stiffness * P;
+        else
+            H += grip.force / y * (P - slip * slip.transpose() / (y * y));
+    }
+    return H;
+}
+
 double ColliderContact::add_gradient(const Field& x, Field& gradient) const {
-    if (empty())
-        return 0;
     double energy = 0;
-    for_touching(x, [&](const Touch& touch, std::size_t) {
-        const Grip& grip = touch.grip;
-        energy += touch.stiffness / 2 * touch.depth * touch.depth;
-        Vec3 g = -touch.stiffness * touch.depth * touch.normal;
-        if (grip.force > 0) {
-            const Vec3 slip =
-                tangential(unpadded(x[touch.corner] - x_n_[touch.corner]), grip.normal);
-            const double y = slip.norm();
-            const bool holds = y < grip.slip_length;
-            energy +=
-                holds ? grip.stiffness / 2 * y * y : grip.force * (y - grip.slip_length / 2);
-            g += (holds ? grip.stiffness : grip.force / y) * slip;
-        }
-        gradient[touch.corner] += padded(g);
-    });
+    if (!empty())
+        for_touching(x, [&](const Touch& touch, std::size_t) {
+            gradient[touch.corner] += padded(gradient_of(touch, x, energy));
+        });
     return energy;
+}
+
+void ColliderContact::add_impulses(const Field& x,
+                                   const Field& m,
+                                   double dt,
+                                   Field& impulse) const {
+    if (empty())
+        return;
+    for_touching(x, [&](const Touch& touch, std::size_t) {
+        double energy = 0;
+        const Vec3 g = gradient_of(touch, x, energy);
+        const Mat3 A = Mat3::Identity() + dt * dt / m[touch.corner][0] * hessian_of(touch, x);
+        impulse[touch.corner] -= padded(dt * A.ldlt().solve(g));
+    });
 }
 
 void ColliderContact::linearize(const Field& x) {
     blocks_.clear();
-    if (empty())
-        return;
-    for_touching(x, [&](const Touch& touch, std::size_t) {
-        const Grip& grip = touch.grip;
-        Mat3 H = Mat3::Zero();
-        if (touch.depth > 0)
-            H += touch.stiffness * touch.normal * touch.normal.transpose();
-        if (grip.force > 0) {
-            const Mat3 P = Mat3::Identity() - grip.normal * grip.normal.transpose();
-            const Vec3 slip = P * unpadded(x[touch.corner] - x_n_[touch.corner]);
-            const double y = slip.norm();
-            if (y < grip.slip_length)
-                H += grip.stiffness * P;
-            else
-                H += grip.force / y * (P - slip * slip.transpose() / (y * y));
-        }
-        blocks_.push_back({touch.corner, H});
-    });
+    if (!empty())
+        for_touching(x, [&](const Touch& touch, std::size_t) {
+            blocks_.push_back({touch.corner, hessian_of(touch, x)});
+        });
 }
 
 void ColliderContact::add_product(const Field& u, Field& product) const {

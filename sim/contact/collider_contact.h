@@ -39,6 +39,10 @@ class ColliderContact {
     /// Keeps the 3×3 Hessians of the corners that touch at x.
     void linearize(const Field& x);
 
+    /// Adds to `impulse` (#C) what touching gives corners of masses m (#C) [kg] in an explicit step that has led to x:
+    /// -dt (1 + dt²/m H)⁻¹ g, each corner for itself, which never makes it bounce however stiff it is.   [N s]
+    void add_impulses(const Field& x, const Field& m, double dt, Field& impulse) const;
+
     /// product += H u.
     void add_product(const Field& u, Field& product) const;
 
@@ -62,6 +66,8 @@ class ColliderContact {
         const Grip& grip;
     };
 
+    Vec3 gradient_of(const Touch& touch, const Field& x, double& energy) const;
+    Mat3 hessian_of(const Touch& touch, const Field& x) const;
     template <class Visit>
     void for_touching(const Field& x, const Visit& visit) const;
 

@@ -69,6 +69,8 @@ std::string to_string(Termination termination) {
             return "conjugate gradients did not converge within their iterations";
         case Termination::NotFinite:
             return "the energy is not finite (a domain is inverted)";
+        case Termination::Unstable:
+            return "the motion is faster than an explicit step can follow";
     }
     return {};
 }

@@ -15,7 +15,7 @@ struct NewtonOptions {
     bool line_search = true;         // false: the full step is taken, whatever it brings
 };
 
-enum class Termination { Converged, IterationLimit, LineSearchFailed, LinearSolveFailed, NotFinite };
+enum class Termination { Converged, IterationLimit, LineSearchFailed, LinearSolveFailed, NotFinite, Unstable };
 
 struct NewtonSummary {
     Termination termination = Termination::NotFinite;

@@ -1,0 +1,115 @@
+// Explicit steps: kick, drift, kick (velocity Verlet).
+#include "sim/base/parallel.h"
+#include "sim/stepper.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sim {
+
+namespace {
+
+constexpr int chunk = 8192;
+constexpr double safety = 0.8;  // of the stable step of the bodies at rest: stretching stiffens
+constexpr double most_excited =
+    1.9;                            // w dt of the motion seen; beyond 2 it grows without bound
+constexpr double most_cells = 0.3;  // that a corner may pass in a step
+constexpr double noise =
+    1e-8;  // of the kinetic energy: strain energy too small to tell a frequency
+
+}  // namespace
+
+double Stepper::explicit_limit(const State& state) const {
+    double limit = std::numeric_limits<double>::infinity();
+    for (const AssembledBody& body : assembly_.bodies) {
+        double speed_squared = 0;
+        for (int c = body.begin; c < body.end; ++c)
+            speed_squared = std::max(speed_squared, dot(state.v[c], state.v[c]));
+        limit = std::min({limit,
+                          safety * 2 / body.highest_frequency,
+                          most_cells * body.cell_size / std::sqrt(speed_squared)});
+    }
+    return limit;
+}
+
+double Stepper::seen_frequency(const Field& dx, const Field& dg) const {
+    // w² = |M⁻¹ dg|²_M / dx·dg: of the modes in dx the fastest weigh most.
+    const int n = static_cast<int>(dx.size());
+    const Vec3p sums = sum_chunks(n, chunk, [&](int begin, int end) {
+        Vec3p sum{};
+        for (int c = begin; c < end; ++c) {
+            const Vec3p df = dg[c] * prescribed_.is_free[c];
+            const double m = assembly_.mass[c][0];
+            sum += Vec3p{dot(df, df) / m, dot(dx[c], df), m * dot(dx[c], dx[c]), 0};
+        }
+        return sum;
+    });
+    const double force = sums[0], strain = sums[1], motion = sums[2];
+    return strain * dt_hat_ * dt_hat_ > noise * motion ? std::sqrt(force / strain) : 0;
+}
+
+bool Stepper::try_explicit(State& state, double dt) {
+    begin_step(state, dt);
+    const int n_corners = static_cast<int>(state.x.size()), n_dofs = map_.n_dofs();
+    const auto& step = potential_.step();
+    const double damped = 1 + scene_.solver.damping * dt_hat_;
+
+    // Kick by half of the forces at the start, and drift.
+    Field& impulse = scratch_.trial;
+    impulse.resize(n_dofs);
+    map_.apply_transposed(gradient_, impulse);
+    for (int i = 0; i < n_dofs; ++i)
+        q_[i] += step.is_free[i]
+                 * (step.q_tilde[i] - (dt_hat_ * inverse_mass_[i] / damped) * impulse[i]);
+    moved_.resize(n_corners);
+    map_.apply(q_, moved_);
+    exchange_contact(state, dt);
+    drift(dt);
+
+    // The forces there. The motion must not be faster than the step can follow.
+    summary_ = {};
+    if (!std::isfinite(potential_.elastic_gradient(x_end_, end_gradient_)))
+        return false;
+    Field &dx = corner_, &dg = reaction_;
+    dg.resize(n_corners);
+    for (int c = 0; c < n_corners; ++c) {
+        dx[c] = x_end_[c] - state.x[c];
+        dg[c] = end_gradient_[c] - gradient_[c];
+    }
+    if (seen_frequency(dx, dg) * dt > most_excited) {
+        summary_.termination = Termination::Unstable;
+        return false;
+    }
+
+    // Kick by the other half, and by colliders, each corner for itself implicitly: they are far stiffer.
+    commit(state, dt);
+    Field& kick = corner_;
+    for (int c = 0; c < n_corners; ++c)
+        kick[c] = dt_hat_ * (assembly_.force[c] - end_gradient_[c]);
+    colliders_.add_impulses(state.x, assembly_.mass, dt, kick);
+    map_.apply_transposed(kick, impulse);
+    for (int i = 0; i < n_dofs; ++i)
+        impulse[i] *= inverse_mass_[i] * step.is_free[i];
+    Field& dv = dx;
+    map_.apply(impulse, dv);
+    set_explicit_reactions(state, dt);
+    for (int c = 0; c < n_corners; ++c) {
+        const Vec3p is_free = prescribed_.is_free[c];
+        state.v[c] += is_free * ((state.v[c] + dv[c]) / damped - state.v[c]);
+    }
+    std::swap(gradient_, end_gradient_);
+    return true;
+}
+
+void Stepper::set_explicit_reactions(const State& state, double dt) {
+    // Force of the pin on a corner: m dv/dt - f + ∂Φ/∂x, by the mean of both ends.
+    reaction_.assign(state.x.size(), Vec3p{});
+    for (const int c : prescribed_.corners) {
+        const Vec3p inertia = assembly_.mass[c] * (state.v[c] - v_hat_[c]) / dt;
+        const Vec3p gradient = 0.5 * (gradient_[c] + end_gradient_[c]);
+        reaction_[c] = (inertia - assembly_.force[c] + gradient)
+                       * (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]);
+    }
+}
+
+}  // namespace sim

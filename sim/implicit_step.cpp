@@ -1,0 +1,105 @@
+// Implicit steps: backward Euler, BDF2, and the paper's single linearised solve.
+#include "sim/stepper.h"
+
+#include <algorithm>
+
+namespace sim {
+
+namespace {
+
+constexpr double dynamic_tolerance = 1e-3;  // of the inner forces of the step
+constexpr double semi_implicit_forcing = 1e-6;
+
+}  // namespace
+
+bool Stepper::try_implicit(State& state, double dt) {
+    begin_step(state, dt);
+    guess(state);
+
+    NewtonOptions options;
+    options.tolerance = dynamic_tolerance;
+    if (scene_.solver.steps == Steps::SemiImplicit) {
+        options.max_iterations = 1;
+        options.line_search = false;
+        options.tolerance = semi_implicit_forcing;
+    }
+    summary_ = minimize(potential_, options, q_, scratch_);
+    newton_iterations += summary_.iterations;
+    cg_iterations += summary_.linear_iterations;
+    if (summary_.termination != Termination::Converged)
+        return false;
+
+    moved_.resize(state.x.size());
+    map_.apply(q_, moved_);
+    balance_momentum();
+    set_reactions();
+
+    // What inner forces gave, before contact on the grid changes what moves the corners.
+    const auto& step = potential_.step();
+    Field& inner = q_;
+    for (int i = 0; i < map_.n_dofs(); ++i)
+        inner[i] = (q_[i] - step.q_tilde[i]) * step.is_free[i];
+    map_.apply(inner, state.inner_impulse);
+    const Field before = scene_.solver.steps == Steps::Bdf2 ? moved_ : Field{};
+    exchange_contact(state, dt_hat_);
+    drift(dt_hat_);
+    commit(state, dt);
+
+    // An impulse of contact is no acceleration that BDF2 may continue: it shifts the velocity before as well.
+    for (std::size_t c = 0; c < before.size(); ++c)
+        state.v_before[c] += moved_[c] - before[c];
+    return true;
+}
+
+void Stepper::guess(const State& state) {
+    // Inner forces change little from one step to the next: start from their last impulse. The paper's single solve is
+    // linearised at x_n, hence starts from rest.
+    if (scene_.solver.steps == Steps::SemiImplicit)
+        return;
+    const auto& step = potential_.step();
+    const double ratio = state.last_dt > 0 ? step.dt / state.last_dt : 0;
+    for (std::size_t c = 0; c < state.x.size(); ++c)
+        corner_[c] = ratio * assembly_.mass[c] * state.inner_impulse[c];
+    Field& impulse = scratch_.trial;
+    impulse.resize(map_.n_dofs());
+    map_.apply_transposed(corner_, impulse);
+    for (int i = 0; i < map_.n_dofs(); ++i)
+        q_[i] += step.is_free[i] * (step.q_tilde[i] + inverse_mass_[i] * impulse[i]);
+}
+
+void Stepper::balance_momentum() {
+    // The solve is inexact. The momentum of a body that nothing holds is known without it: elastic forces sum to zero,
+    // and what colliders give is in the gradient.
+    const double damped = 1 + scene_.solver.damping * dt_hat_;
+    for (const AssembledBody& body : assembly_.bodies) {
+        const bool held = std::any_of(prescribed_.corners.begin(),
+                                      prescribed_.corners.end(),
+                                      [&](int c) { return c >= body.begin && c < body.end; });
+        if (held)
+            continue;
+        Vec3p missing{};
+        double mass = 0;
+        for (int c = body.begin; c < body.end; ++c) {
+            const Vec3p force = assembly_.force[c] - potential_.corner_gradient()[c];
+            missing += (assembly_.mass[c] * v_hat_[c] + dt_hat_ * force) / damped
+                       - assembly_.mass[c] * moved_[c];
+            mass += assembly_.mass[c][0];
+        }
+        for (int c = body.begin; c < body.end; ++c)
+            moved_[c] += missing / mass;
+    }
+}
+
+void Stepper::set_reactions() {
+    // Force of the pin on a corner: m dv/dt - f + ∂Φ/∂x at the end of the step.
+    reaction_.assign(moved_.size(), Vec3p{});
+    const double damped = 1 + scene_.solver.damping * dt_hat_;
+    for (const int c : prescribed_.corners) {
+        const Vec3p v_new = q_[map_.dof_of_corner()[c]];
+        const Vec3p inertia = assembly_.mass[c] * (damped * v_new - v_hat_[c]) / dt_hat_;
+        reaction_[c] = (inertia - assembly_.force[c] + potential_.corner_gradient()[c])
+                       * (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]);
+    }
+}
+
+}  // namespace sim

@@ -1,0 +1,23 @@
+// What a step changes and later steps depend on.
+#pragma once
+
+#include "sim/base/field.h"
+
+#include <limits>
+
+namespace sim {
+
+/// Indexed by corner. All of it belongs in a checkpoint.
+struct State {
+    double time = 0;  // [s]
+    Field x, v;       // positions [m], velocities [m/s]
+    Field
+        inner_impulse;  // velocity that inner forces gave in the last step, a guess for the next [m/s]
+    Field x_before,
+        v_before;  // where the last step began; kept by BDF2 alone, empty before its first step
+    double last_dt = 0;  // of the last step, 0 before the first [s]
+    double dt_limit = std::numeric_limits<
+        double>::infinity();  // what failed and unstable steps left of dt [s]
+};
+
+}  // namespace sim

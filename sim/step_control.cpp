@@ -1,0 +1,55 @@
+// Which step comes next: as long as allowed, halved where it fails, grown back slowly.
+#include "sim/diagnosis.h"
+#include "sim/stepper.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sim {
+
+namespace {
+
+constexpr double growth = 1.1;     // of a step after one that succeeded
+constexpr double shortest = 1e-3;  // step worth trying, as a share of dt
+constexpr double rounding = 1e-6;  // of a number of steps
+
+}  // namespace
+
+void Stepper::advance(State& state, double end, double dt) {
+    failures.clear();
+    const bool is_explicit = scene_.solver.steps == Steps::Explicit;
+    while (state.time < end) {
+        // Equal steps to the end, so that the last one is no sliver.
+        const double remaining = end - state.time;
+        const double longest = is_explicit ? std::min(dt, explicit_limit(state)) : dt;
+        const double allowed = std::min(longest, state.dt_limit);
+        const double n = std::max(1.0, std::ceil(remaining / allowed - rounding));
+        const double length = remaining / n;
+        if (try_step(state, length)) {
+            ++steps;
+            state.dt_limit *= growth;
+            if (n == 1)
+                state.time = end;
+            continue;
+        }
+        state.dt_limit = length / 2;
+        const bool is_expected = summary_.termination == Termination::Unstable;
+        const assets::Error failure = diagnose(scene_,
+                                               assembly_,
+                                               state,
+                                               is_explicit ? x_end_ : potential_.positions(),
+                                               length,
+                                               summary_);
+        if (length < shortest * longest)
+            throw failure;
+        if (!is_expected)
+            failures.emplace_back(failure.what());
+    }
+}
+
+bool Stepper::try_step(State& state, double dt) {
+    return scene_.solver.steps == Steps::Explicit ? try_explicit(state, dt)
+                                                  : try_implicit(state, dt);
+}
+
+}  // namespace sim
