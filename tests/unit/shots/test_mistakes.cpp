@@ -132,8 +132,6 @@ TEST_CASE("words of features to come are told apart from mistakes") {
     check_single_mistake(GENERATE(values<Case>({
         {"\"enriched\"", "\"mpm\"", "8:10: ", "not available yet"},
         {"\"enriched\"", "\"auto\"", "8:10: ", "not available yet"},
-        {"dt     = \"1 ms\"", "steps  = \"bdf2\"", "9:10: ", "not available yet"},
-        {"dt     = \"1 ms\"", "steps  = \"explicit\"", "9:10: ", "not available yet"},
         {"dt     = \"1 ms\"", "kernel = \"cubic\"", "9:10: ", "not available yet"},
         {"dt     = \"1 ms\"",
          "enrich = [\"interface\", \"strain\"]",
