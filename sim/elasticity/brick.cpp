@@ -167,15 +167,20 @@ ALWAYS_INLINE void take_law(const Brick& brick,
 
 template <class Law>
 ALWAYS_INLINE void take_stiffness(
-    const Brick& brick, int b, Model model, const Matrix3<Lanes>& F, Lanes* A) {
+    const Brick& brick, int b, Model model, const Matrix3<Lanes>& F, FloatLanes* A) {
     const unsigned bit = 1u << static_cast<int>(model);
     if (!(brick.laws[b] & bit))
         return;
     alignas(64) Lanes A_law[45];
-    Law::stiffness(F, brick.mu[b], brick.lambda[b], A_law);
+    // Over mu; 0 / 0 stands for λ/μ in empty slots, which weigh nothing.
+    const Lanes ratio =
+        select_positive(brick.mu[b], Lanes(brick.lambda[b] / brick.mu[b]), Lanes{});
+    Law::stiffness(F, uniform<Lanes>(1), ratio, A_law);
     const Lanes is_law = where_law(brick.law[b], model);
     for (int k = 0; k < 45; ++k)
-        A[k] = select_positive(is_law, brick.volume[b] * A_law[k], A[k]);
+        A[k] = __builtin_convertvector(
+            select_positive(is_law, A_law[k], __builtin_convertvector(A[k], Lanes)),
+            FloatLanes);
 }
 
 }  // namespace
@@ -211,7 +216,7 @@ void linearize_brick(Brick& brick, double edge, const BrickFields& fields) {
         Eight h[3];
         load_modes(brick, fields, brick.batch[b], h);
         const Matrix3<Lanes> F = gradient_of_modes(h, brick.volume[b], edge);
-        Lanes* A = &brick.stiffness[45 * b];
+        FloatLanes* A = &brick.stiffness[45 * b];
         take_stiffness<NeoHookean>(brick, b, Model::NeoHookean, F, A);
         take_stiffness<StableNeoHookean>(brick, b, Model::StableNeoHookean, F, A);
         take_stiffness<FixedCorotated>(brick, b, Model::FixedCorotated, F, A);
@@ -220,20 +225,22 @@ void linearize_brick(Brick& brick, double edge, const BrickFields& fields) {
 
 SUPPLE_LANES
 void add_brick_product(const Brick& brick, double edge, const BrickFields& fields) {
-    const double scale = 1 / (16 * edge * edge);  // 1/(4s) from the modes to F, and 1/(4s) back
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
+        // 1/(4s) from the modes to F, and 1/(4s) back
+        const Lanes scale = brick.weight[b] * (1 / (16 * edge * edge));
         Eight h[3], g[3];
         load_modes(brick, fields, brick.batch[b], h);
         Matrix3<Lanes> dF, dP{};
         times<9>([&](auto k) INLINED { dF.m[k] = scale * h[k % 3].v[linear_mode[k / 3]]; });
-        const Lanes* A = &brick.stiffness[45 * b];
+        const FloatLanes* A = &brick.stiffness[45 * b];
         times<9>([&](auto r) INLINED {
             times<9>([&](auto c) INLINED {
                 if constexpr (c >= r) {
                     constexpr int entry = r * (17 - r) / 2 + c;  // of the packed upper triangle
-                    dP.m[r] += A[entry] * dF.m[c];
+                    const Lanes A_rc = __builtin_convertvector(A[entry], Lanes);
+                    dP.m[r] += A_rc * dF.m[c];
                     if constexpr (c > r)
-                        dP.m[c] += A[entry] * dF.m[r];
+                        dP.m[c] += A_rc * dF.m[r];
                 }
             });
         });
@@ -249,11 +256,15 @@ void add_brick_diagonal(const Brick& brick, double edge, const BrickFields& fiel
     // around a corner to the next; the hourglass modes add three bilinear terms k and one trilinear k/2.
     constexpr int packed_diagonal[9] = {0, 9, 17, 24, 30, 35, 39, 42, 44};
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
-        const Lanes* A = &brick.stiffness[45 * b];
+        const FloatLanes* A = &brick.stiffness[45 * b];
+        const Lanes scale = brick.weight[b] * (1 / (16 * edge * edge));
         times<3>([&](auto i) INLINED {
-            Lanes sum =
-                A[packed_diagonal[i]] + A[packed_diagonal[3 + i]] + A[packed_diagonal[6 + i]];
-            sum = sum * (1 / (16 * edge * edge)) + 3.5 * brick.hourglass[b];
+            const Lanes sum =
+                scale
+                    * __builtin_convertvector(A[packed_diagonal[i]] + A[packed_diagonal[3 + i]]
+                                                  + A[packed_diagonal[6 + i]],
+                                              Lanes)
+                + 3.5 * brick.hourglass[b];
             times<8>([&](auto a) INLINED {
                 add_to(corner_sums(fields, i, a) + brick.batch[b] + brick.step[a & 6], sum);
             });

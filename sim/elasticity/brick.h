@@ -24,8 +24,12 @@ struct Brick {
     LaneVector volume;      // (#batches) filled volume V [m³]
     LaneVector mu, lambda;  // (#batches) [Pa]
     LaneVector law;         // (#batches) sim::Model as a number
-    LaneVector stiffness;   // (45 #batches) V ∂P/∂F, upper triangle [J]
     LaneVector hourglass;   // (#batches) stiffness of the bilinear hourglass modes [N/m]
+    LaneVector weight;      // (#batches) V mu [J]
+
+    // (45 #batches) ∂P/∂F over mu, upper triangle. The one array that a product of K reads once and cannot keep in a
+    // cache is in single precision: Newton's direction is inexact anyway, the gradient that it serves is not.
+    std::vector<FloatLanes> stiffness;
 };
 
 /// What a pass over a brick reads and writes: structure of arrays, n_local entries per component.
@@ -34,16 +38,16 @@ struct BrickFields {
     double* out[3];       // added to: gradient [N], product K u [N], or the diagonal of K [N/m]
     double* out_right
         [3];  // the same for corners on the right of a domain, one entry to the left of their place: a sum
-        // that overlaps the one just stored would wait for it to reach the cache
+    // that overlaps the one just stored would wait for it to reach the cache
 };
 
 /// ∂E/∂x is added to `out`; returns the energy E = Σ V Ψ(F) + E_hg [J], +infinity where a law forbids the state.
 double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fields);
 
-/// V ∂P/∂F of every domain at corners `in`, exact (may be indefinite).
+/// ∂P/∂F of every domain at corners `in`, exact (may be indefinite).
 void linearize_brick(Brick& brick, double edge, const BrickFields& fields);
 
-/// Replaces V ∂P/∂F by its positive semi-definite projection, domain by domain, where it is indefinite.
+/// Replaces ∂P/∂F by its positive semi-definite projection, domain by domain, where it is indefinite.
 void project_brick(Brick& brick, double edge, const BrickFields& fields);
 
 /// K u is added to `out`.

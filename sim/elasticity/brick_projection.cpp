@@ -18,11 +18,12 @@ void project_brick(Brick& brick, double edge, const BrickFields& fields) {
                         F(i, j) += ((a >> j & 1) ? 1 : -1) * fields.in[i][slot + brick.step[a]]
                                    / (4 * edge);
             const auto model = static_cast<Model>(static_cast<int>(brick.law[b][l]));
-            const Mat9 A = projected_stiffness(model, F, brick.mu[b][l], brick.lambda[b][l]);
+            const Mat9 A =
+                projected_stiffness(model, F, 1, brick.lambda[b][l] / brick.mu[b][l]);
             int k = 0;
             for (int r = 0; r < 9; ++r)
                 for (int c = r; c < 9; ++c, ++k)
-                    brick.stiffness[45 * b + k][l] = brick.volume[b][l] * A(r, c);
+                    brick.stiffness[45 * b + k][l] = static_cast<float>(A(r, c));
         }
 }
 

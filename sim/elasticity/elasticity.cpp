@@ -130,8 +130,9 @@ void Elasticity::fill_brick(const Lattice& lattice,
         brick.lambda.push_back(lambda);
         brick.law.push_back(law);
         brick.hourglass.push_back(hourglass);
+        brick.weight.push_back(volume * mu);
     }
-    brick.stiffness.assign(45 * brick.batch.size(), zero);
+    brick.stiffness.assign(45 * brick.batch.size(), FloatLanes{});
     bricks_.push_back(std::move(brick));
 }
 

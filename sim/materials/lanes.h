@@ -21,6 +21,7 @@ inline constexpr int lane_count = 8;
 /// alignas(64) structs, or in a LaneVector (lane_vector.h), not in a plain std::vector. And pass
 /// them by reference to functions that are not inlined: by value, the two instruction sets differ.
 using Lanes [[gnu::vector_size(8 * lane_count)]] = double;
+using FloatLanes [[gnu::vector_size(4 * lane_count)]] = float;  // to store, not to compute with
 using LaneBits [[gnu::vector_size(8 * lane_count)]] = std::uint64_t;
 
 /// The unsigned integers as wide as S.
