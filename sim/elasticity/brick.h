@@ -15,7 +15,7 @@ namespace sim {
 /// volume and moduli and take part as undeformed.
 struct Brick {
     int n_local = 0;             // local corners, padded so that every batch stays inside
-    int first_local = 0;         // of this brick in the elasticity's pool of local corners
+    int first_local = 0;         // of this brick among those of all bricks
     std::array<int, 8> step{};   // local index offset of corner a
     std::vector<int> batch;      // first slot of each batch that holds a domain
     std::vector<int> domain;     // (8 #batches) domain of each slot, -1 where none

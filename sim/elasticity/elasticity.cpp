@@ -11,7 +11,6 @@ namespace {
 
 // Cells per brick along x, y, z: long rows for full batches, small enough for the second-level cache.
 constexpr std::array<int, 3> largest_brick = {32, 8, 8};
-constexpr int corner_chunk = 8192;
 
 struct Range {
     std::array<int, 3> low, high;  // inclusive
@@ -53,30 +52,27 @@ Elasticity::Elasticity(const Lattice& lattice, const Body& body) : edge_(lattice
             key[2 - k] = (lattice.cell[p][k] - range.low[k]) / size[k];
         domains_of_brick[key].push_back(p);
     }
-    for (const auto& [key, domains] : domains_of_brick) {
-        std::array<int, 3> low;
-        for (int k = 0; k < 3; ++k)
-            low[k] = range.low[k] + key[2 - k] * size[k];
-        fill_brick(lattice, body, low, size, domains);
+    // Bricks of one colour share no corner: neighbours differ in the parity of one coordinate at least.
+    for (int color = 0; color < 8; ++color) {
+        color_start_.push_back(static_cast<int>(bricks_.size()));
+        for (const auto& [key, domains] : domains_of_brick) {
+            if ((key[0] & 1) + 2 * (key[1] & 1) + 4 * (key[2] & 1) != color)
+                continue;
+            std::array<int, 3> low;
+            for (int k = 0; k < 3; ++k)
+                low[k] = range.low[k] + key[2 - k] * size[k];
+            fill_brick(lattice, body, low, size, domains);
+        }
     }
+    color_start_.push_back(static_cast<int>(bricks_.size()));
 
-    // Each corner's local copies.
-    sources_start_.assign(lattice.n_corners() + 1, 0);
-    for (const int c : corner_of_local_)
-        if (c >= 0)
-            ++sources_start_[c + 1];
-    for (int c = 0; c < lattice.n_corners(); ++c)
-        sources_start_[c + 1] += sources_start_[c];
-    sources_.resize(sources_start_.back());
-    std::vector<int> next(sources_start_.begin(), sources_start_.end() - 1);
+    std::vector<char> met(lattice.n_corners(), 0);
+    adds_.assign(corner_of_local_.size(), 0);
     for (std::size_t l = 0; l < corner_of_local_.size(); ++l)
-        if (corner_of_local_[l] >= 0)
-            sources_[next[corner_of_local_[l]]++] = static_cast<int>(l);
-    for (int i = 0; i < 3; ++i) {
-        in_[i].assign(corner_of_local_.size(), 0.0);
-        out_[i].assign(corner_of_local_.size(), 0.0);
-        out_right_[i].assign(corner_of_local_.size(), 0.0);
-    }
+        if (const int c = corner_of_local_[l]; c >= 0) {
+            adds_[l] = met[c];
+            met[c] = 1;
+        }
 }
 
 void Elasticity::fill_brick(const Lattice& lattice,
@@ -136,102 +132,109 @@ void Elasticity::fill_brick(const Lattice& lattice,
     bricks_.push_back(std::move(brick));
 }
 
-BrickFields Elasticity::fields(const Brick& brick) {
+BrickFields Elasticity::Scratch::fields(int n_local) {
     BrickFields fields;
     for (int i = 0; i < 3; ++i) {
-        fields.in[i] = in_[i].data() + brick.first_local;
-        fields.out[i] = out_[i].data() + brick.first_local;
-        fields.out_right[i] = out_right_[i].data() + brick.first_local;
+        for (auto* array : {&in[i], &out[i], &out_right[i]})
+            array->resize(n_local);
+        fields.in[i] = in[i].data();
+        fields.out[i] = out[i].data();
+        fields.out_right[i] = out_right[i].data();
     }
     return fields;
 }
 
-void Elasticity::load(const Vec3p* values) {
-    for_chunks(
-        static_cast<int>(corner_of_local_.size()), corner_chunk, [&](int begin, int end) {
-            for (int l = begin; l < end; ++l) {
-                const int c = corner_of_local_[l];
-                const Vec3p value = c >= 0 ? values[c] : Vec3p{};
-                for (int i = 0; i < 3; ++i) {
-                    in_[i][l] = value[i];
-                    out_[i][l] = 0;
-                    out_right_[i][l] = 0;
-                }
-            }
-        });
+void Elasticity::load(const Brick& brick, const Vec3p* values, Scratch& scratch) const {
+    const int* corner = &corner_of_local_[brick.first_local];
+    for (int l = 0; l < brick.n_local; ++l) {
+        const Vec3p value = corner[l] >= 0 ? values[corner[l]] : Vec3p{};
+        for (int i = 0; i < 3; ++i)
+            scratch.in[i][l] = value[i];
+    }
 }
 
-void Elasticity::sum_to_corners(Vec3p* values) const {
-    for_chunks(
-        static_cast<int>(sources_start_.size()) - 1, corner_chunk, [&](int begin, int end) {
-            for (int c = begin; c < end; ++c) {
-                Vec3p sum{};
-                for (int k = sources_start_[c]; k < sources_start_[c + 1]; ++k) {
-                    const int l = sources_[k], left = l - 1;
-                    sum += Vec3p{out_[0][l], out_[1][l], out_[2][l], 0};
-                    if (l > 0)
-                        sum += Vec3p{
-                            out_right_[0][left], out_right_[1][left], out_right_[2][left], 0};
-                }
-                values[c] = sum;
-            }
-        });
+void Elasticity::store(const Brick& brick, const Scratch& scratch, Vec3p* values) const {
+    const auto& [in, out, right] = scratch;
+    const int* corner = &corner_of_local_[brick.first_local];
+    const char* adds = &adds_[brick.first_local];
+    for (int l = 0; l < brick.n_local; ++l) {
+        if (corner[l] < 0)
+            continue;
+        Vec3p sum{out[0][l], out[1][l], out[2][l], 0};
+        if (l > 0)
+            sum += Vec3p{right[0][l - 1], right[1][l - 1], right[2][l - 1], 0};
+        values[corner[l]] = adds[l] ? values[corner[l]] + sum : sum;
+    }
 }
 
 template <class Kernel>
-void Elasticity::for_bricks(const Kernel& kernel) {
-    for_chunks(static_cast<int>(bricks_.size()), 1, [&](int begin, int end) {
-        for (int k = begin; k < end; ++k)
-            kernel(bricks_[k]);
-    });
+double Elasticity::for_bricks(const Vec3p* in, Vec3p* out, const Kernel& kernel) {
+    double sum = 0;
+    for (std::size_t color = 0; color + 1 < color_start_.size(); ++color) {
+        const int first = color_start_[color];
+        sum += sum_chunks(color_start_[color + 1] - first, 1, [&](int begin, int /*end*/) {
+            thread_local Scratch scratch;
+            Brick& brick = bricks_[first + begin];
+            const BrickFields fields = scratch.fields(brick.n_local);
+            if (in != nullptr)
+                load(brick, in, scratch);
+            if (out != nullptr)
+                for (auto* arrays : {&scratch.out, &scratch.out_right})
+                    for (auto& array : *arrays)
+                        std::fill_n(array.begin(), brick.n_local, 0.0);
+            const double value = kernel(brick, fields);
+            if (out != nullptr)
+                store(brick, scratch, out);
+            return value;
+        });
+    }
+    return sum;
 }
 
 double Elasticity::energy_and_gradient(const Vec3p* x, Vec3p* gradient) {
-    load(x);
-    const double energy =
-        sum_chunks(static_cast<int>(bricks_.size()), 1, [&](int begin, int end) {
-            double sum = 0;
-            for (int k = begin; k < end; ++k)
-                sum += add_brick_gradient(bricks_[k], edge_, fields(bricks_[k]));
-            return sum;
-        });
-    sum_to_corners(gradient);
-    return energy;
+    return for_bricks(x, gradient, [&](const Brick& brick, const BrickFields& fields) {
+        return add_brick_gradient(brick, edge_, fields);
+    });
 }
 
 void Elasticity::linearize(const Vec3p* x, bool project) {
-    load(x);
-    for_bricks([&](Brick& brick) {
-        linearize_brick(brick, edge_, fields(brick));
+    for_bricks(x, nullptr, [&](Brick& brick, const BrickFields& fields) {
+        linearize_brick(brick, edge_, fields);
         if (project)
-            project_brick(brick, edge_, fields(brick));
+            project_brick(brick, edge_, fields);
+        return 0.0;
     });
 }
 
 void Elasticity::product(const Vec3p* u, Vec3p* product) {
-    load(u);
-    for_bricks([&](Brick& brick) { add_brick_product(brick, edge_, fields(brick)); });
-    sum_to_corners(product);
+    for_bricks(u, product, [&](const Brick& brick, const BrickFields& fields) {
+        add_brick_product(brick, edge_, fields);
+        return 0.0;
+    });
 }
 
 void Elasticity::diagonal(Vec3p* diagonal) {
-    for (auto* sums : {&out_, &out_right_})
-        for (auto& component : *sums)
-            std::fill(component.begin(), component.end(), 0.0);
-    for_bricks([&](Brick& brick) { add_brick_diagonal(brick, edge_, fields(brick)); });
-    sum_to_corners(diagonal);
+    for_bricks(nullptr, diagonal, [&](const Brick& brick, const BrickFields& fields) {
+        add_brick_diagonal(brick, edge_, fields);
+        return 0.0;
+    });
 }
 
-Elasticity::SmallestJ Elasticity::smallest_J(const Vec3p* x) {
-    load(x);
+Elasticity::SmallestJ Elasticity::smallest_J(const Vec3p* x) const {
     SmallestJ smallest{2e300, -1};
-    for (const Brick& brick : bricks_)
+    Scratch scratch;
+    for (const Brick& brick : bricks_) {
+        const BrickFields fields = scratch.fields(brick.n_local);
+        load(brick, x, scratch);
         for (std::size_t b = 0; b < brick.batch.size(); ++b) {
-            const Lanes J = brick_J(brick, static_cast<int>(b), edge_, fields(brick));
+            const Lanes J = brick_J(brick, static_cast<int>(b), edge_, fields);
             for (int l = 0; l < lane_count; ++l)
-                if (brick.domain[lane_count * b + l] >= 0 && !(J[l] >= smallest.J))
-                    smallest = {J[l], brick.domain[lane_count * b + l]};
+                if (const int p = brick.domain[lane_count * b + l];
+                    p >= 0
+                    && (!(J[l] >= smallest.J) || (J[l] == smallest.J && p < smallest.domain)))
+                    smallest = {J[l], p};
         }
+    }
     return smallest;
 }
 

@@ -19,8 +19,8 @@ namespace sim {
 /// eps = (1+nu)/2 gives a domain bent along a lattice axis its exact stiffness E I, as incompatible modes would: the
 /// mode u_x = ξζ stores eps mu 2/3, the beam E/6.
 ///
-/// All fields are indexed by the body's corners. Not safe to call from several threads at once (shared scratch); it runs
-/// in parallel itself, with the same result for any number of threads.
+/// All fields are indexed by the body's corners. It runs in parallel itself, with the same result for any number of
+/// threads: bricks that share corners add to them one colour after the other.
 class Elasticity {
   public:
     Elasticity(const Lattice& lattice, const Body& body);
@@ -42,25 +42,33 @@ class Elasticity {
         int domain = -1;
     };
 
-    SmallestJ smallest_J(const Vec3p* x);
+    SmallestJ smallest_J(const Vec3p* x) const;
 
   private:
+    /// A brick's corners and sums as its kernels want them, small enough for the second-level cache.
+    struct Scratch {
+        std::array<std::vector<double>, 3> in, out, out_right;  // (#local) per component
+
+        BrickFields fields(int n_local);
+    };
+
     void fill_brick(const Lattice& lattice,
                     const Body& body,
                     const std::array<int, 3>& low,
                     const std::array<int, 3>& size,
                     const std::vector<int>& domains);
-    void load(const Vec3p* values);
-    void sum_to_corners(Vec3p* values) const;
+    void load(const Brick& brick, const Vec3p* values, Scratch& scratch) const;
+    void store(const Brick& brick, const Scratch& scratch, Vec3p* values) const;
     template <class Kernel>
-    void for_bricks(const Kernel& kernel);
-    BrickFields fields(const Brick& brick);
+    double for_bricks(const Vec3p* in, Vec3p* out, const Kernel& kernel);
 
     double edge_ = 0;
-    std::vector<Brick> bricks_;
-    std::vector<int> corner_of_local_;          // (#pool) -1 where the lattice has no corner
-    std::vector<int> sources_start_, sources_;  // corner -> its local corners, in order
-    std::array<std::vector<double>, 3> in_, out_, out_right_;  // (#pool) per component
+    std::vector<Brick> bricks_;     // by colour
+    std::vector<int> color_start_;  // first brick of each colour, and their number
+    std::vector<int>
+        corner_of_local_;  // (#local of all bricks) -1 where the lattice has no corner
+    std::vector<char>
+        adds_;  // (#local of all bricks) whether a brick before has written to the corner
 };
 
 }  // namespace sim
