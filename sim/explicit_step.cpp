@@ -32,15 +32,16 @@ double Stepper::explicit_limit(const State& state) const {
     return limit;
 }
 
-double Stepper::seen_frequency(const Field& dx, const Field& dg) const {
-    // w² = |M⁻¹ dg|²_M / dx·dg: of the modes in dx the fastest weigh most.
-    const int n = static_cast<int>(dx.size());
+double Stepper::seen_frequency(const State& state) const {
+    // w² = |M⁻¹ dg|²_M / dx·dg, with dg the change of the forces over dx: of the modes in dx the fastest weigh most.
+    const int n = static_cast<int>(state.x.size());
     const Vec3p sums = sum_chunks(n, chunk, [&](int begin, int end) {
         Vec3p sum{};
         for (int c = begin; c < end; ++c) {
-            const Vec3p df = dg[c] * prescribed_.is_free[c];
+            const Vec3p dx = x_end_[c] - state.x[c];
+            const Vec3p dg = (end_gradient_[c] - gradient_[c]) * prescribed_.is_free[c];
             const double m = assembly_.mass[c][0];
-            sum += Vec3p{dot(df, df) / m, dot(dx[c], df), m * dot(dx[c], dx[c]), 0};
+            sum += Vec3p{dot(dg, dg) / m, dot(dx, dg), m * dot(dx, dx), 0};
         }
         return sum;
     });
@@ -55,14 +56,12 @@ bool Stepper::try_explicit(State& state, double dt) {
     const double damped = 1 + scene_.solver.damping * dt_hat_;
 
     // Kick by half of the forces at the start, and drift.
-    Field& impulse = scratch_.trial;
-    impulse.resize(n_dofs);
-    map_.apply_transposed(gradient_, impulse);
+    Field& buffer = scratch_.trial;
+    const Field& force = map_.applied_transposed(gradient_, buffer);
     for (int i = 0; i < n_dofs; ++i)
         q_[i] += step.is_free[i]
-                 * (step.q_tilde[i] - (dt_hat_ * inverse_mass_[i] / damped) * impulse[i]);
-    moved_.resize(n_corners);
-    map_.apply(q_, moved_);
+                 * (step.q_tilde[i] - (dt_hat_ * inverse_mass_[i] / damped) * force[i]);
+    moved_ = map_.applied(q_, moved_);
     exchange_contact(state, dt);
     drift(dt);
 
@@ -70,13 +69,7 @@ bool Stepper::try_explicit(State& state, double dt) {
     summary_ = {};
     if (!std::isfinite(potential_.elastic_gradient(x_end_, end_gradient_)))
         return false;
-    Field &dx = corner_, &dg = reaction_;
-    dg.resize(n_corners);
-    for (int c = 0; c < n_corners; ++c) {
-        dx[c] = x_end_[c] - state.x[c];
-        dg[c] = end_gradient_[c] - gradient_[c];
-    }
-    if (seen_frequency(dx, dg) * dt > most_excited) {
+    if (seen_frequency(state) * dt > most_excited) {
         summary_.termination = Termination::Unstable;
         return false;
     }
@@ -87,11 +80,11 @@ bool Stepper::try_explicit(State& state, double dt) {
     for (int c = 0; c < n_corners; ++c)
         kick[c] = dt_hat_ * (assembly_.force[c] - end_gradient_[c]);
     colliders_.add_impulses(state.x, assembly_.mass, dt, kick);
-    map_.apply_transposed(kick, impulse);
+    Field& dq = q_;
+    const Field& impulse = map_.applied_transposed(kick, buffer);
     for (int i = 0; i < n_dofs; ++i)
-        impulse[i] *= inverse_mass_[i] * step.is_free[i];
-    Field& dv = dx;
-    map_.apply(impulse, dv);
+        dq[i] = inverse_mass_[i] * impulse[i] * step.is_free[i];
+    const Field& dv = map_.applied(dq, corner_);
     set_explicit_reactions(state, dt);
     for (int c = 0; c < n_corners; ++c) {
         const Vec3p is_free = prescribed_.is_free[c];

@@ -17,10 +17,10 @@ constexpr double rounding =
 
 void IncrementalPotential::update_positions(const Field& q) {
     x_.resize(step_.x_n.size());
-    map_.apply(q, x_);
+    const Field& u = map_.applied(q, x_);
     for_chunks(static_cast<int>(x_.size()), chunk, [&](int begin, int end) {
         for (int c = begin; c < end; ++c)
-            x_[c] = step_.x_n[c] + step_.dt * x_[c];
+            x_[c] = step_.x_n[c] + step_.dt * u[c];
     });
 }
 
@@ -49,13 +49,13 @@ double IncrementalPotential::value_and_gradient(const Field& q, Field& gradient)
     const int n = static_cast<int>(q.size());
     inner_part_.resize(n);
     gradient.resize(n);
-    map_.apply_transposed(corner_gradient_, inner_part_);
+    const Field& force = map_.applied_transposed(corner_gradient_, inner_part_);
     value += sum_chunks(n, chunk, [&](int begin, int end) {
         Vec3p sum{};
         for (int i = begin; i < end; ++i) {
             const Vec3p change = q[i] - step_.q_tilde[i];
             const Vec3p impulse = step_.mass[i] * change;
-            inner_part_[i] *= step_.dt;
+            inner_part_[i] = step_.dt * force[i];
             gradient[i] = (impulse + inner_part_[i]) * step_.is_free[i];
             sum += impulse * change;
         }
@@ -100,18 +100,20 @@ void IncrementalPotential::linearize(const Field& q, bool project) {
     noise_ = rounding * largest_coordinate * step_.dt * std::sqrt(noise_squared);
 }
 
-void IncrementalPotential::hessian_product(const Field& p, Field& product) {
-    corner_diagonal_.resize(x_.size());
-    Field& u = corner_diagonal_;
-    map_.apply(p, u);
+double IncrementalPotential::hessian_product(const Field& p, Field& product) {
+    const Field& u = map_.applied(p, corner_diagonal_);
     for (const ElasticBody& body : bodies_)
         body.elasticity->product(&u[body.begin], &corner_product_[body.begin]);
     colliders_.add_product(u, corner_product_);
-    map_.apply_transposed(corner_product_, product);
+    const Field& Ku = map_.applied_transposed(corner_product_, product);
     const double dt_squared = step_.dt * step_.dt;
-    for_chunks(static_cast<int>(p.size()), chunk, [&](int begin, int end) {
-        for (int i = begin; i < end; ++i)
-            product[i] = step_.mass[i] * p[i] + dt_squared * product[i];
+    return sum_chunks(static_cast<int>(p.size()), chunk, [&](int begin, int end) {
+        Vec3p sum{};
+        for (int i = begin; i < end; ++i) {
+            product[i] = step_.mass[i] * p[i] + dt_squared * Ku[i];
+            sum += p[i] * product[i];
+        }
+        return sum[0] + sum[1] + sum[2];
     });
 }
 

@@ -44,7 +44,7 @@ class IncrementalPotential : public Potential {
 
     double value_and_gradient(const Field& q, Field& gradient) override;
     void linearize(const Field& q, bool project) override;
-    void hessian_product(const Field& p, Field& product) override;
+    double hessian_product(const Field& p, Field& product) override;
 
     const Field& inverse_diagonal() const override { return inverse_diagonal_; }
 

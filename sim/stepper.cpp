@@ -91,12 +91,7 @@ void Stepper::transfer(const State& state) {
     // value at the node and only the rest by means: rigid motion is exact, and so is momentum, as Σ_i w_ic x_i = x_c.
     const int n = map_.n_dofs();
     auto& step = potential_.step();
-    dof_mass_.resize(n);
-    q_n_.resize(n);
-    step.q_tilde.resize(n);
-    step.mass.resize(n);
     corner_.resize(state.x.size());
-    map_.apply_transposed(assembly_.mass, dof_mass_);
     std::vector<RigidMotion> rigid;
     for (const auto& [begin, end, cell_size] : ranges_) {
         const bool any_slave =
@@ -106,8 +101,12 @@ void Stepper::transfer(const State& state) {
         for (int c = begin; c < end; ++c)
             corner_[c] = assembly_.mass[c] * (v_hat_[c] - rigid.back().at(state.x[c]));
     }
-    map_.apply_transposed(corner_, q_n_);
-    map_.apply_transposed(assembly_.force, step.q_tilde);
+    dof_mass_ = map_.applied_transposed(assembly_.mass, dof_mass_);
+    const Field& momentum = map_.applied_transposed(corner_, q_n_);
+    const Field& force = map_.applied_transposed(assembly_.force, step.q_tilde);
+    q_n_.resize(n);
+    step.q_tilde.resize(n);
+    step.mass.resize(n);
 
     // q~ = (q_n + dt^ M⁻¹ f) / (1 + damping dt^); damping acts at the end of the step, inside M.
     // A node that corners only touch with weight zero has no mass: it is held, and nothing depends on it.
@@ -120,8 +119,9 @@ void Stepper::transfer(const State& state) {
         inverse_mass_[i] = inverse_mass;
         if (!(mass > 0))
             step.is_free[i] = Vec3p{};
-        q_n_[i] = rigid[map_.dof_body()[i]].at(map_.dof_position()[i]) + inverse_mass * q_n_[i];
-        step.q_tilde[i] = (q_n_[i] + dt_hat_ * inverse_mass * step.q_tilde[i]) / damped;
+        q_n_[i] =
+            rigid[map_.dof_body()[i]].at(map_.dof_position()[i]) + inverse_mass * momentum[i];
+        step.q_tilde[i] = (q_n_[i] + dt_hat_ * inverse_mass * force[i]) / damped;
         step.mass[i] = damped * dof_mass_[i];
     }
     step.static_force.clear();
@@ -190,8 +190,7 @@ void Stepper::commit(State& state, double dt) {
     }
     // Corner velocities: the new ones of the degrees of freedom, and for slaved corners what the grid could not see
     // of the old ones (FLIP), fading at the rate of PIC.
-    Field& seen = corner_;
-    map_.apply(q_n_, seen);
+    const Field& seen = map_.applied(q_n_, corner_);
     const double keep = std::exp(-pic_rate * dt);
     for (std::size_t c = 0; c < state.v.size(); ++c)
         state.v[c] = moved_[c] + (free_[c] ? Vec3p{} : keep * (v_hat_[c] - seen[c]));

@@ -72,7 +72,7 @@ class Stepper {
 
     // explicit_step.cpp
     double explicit_limit(const State& state) const;
-    double seen_frequency(const Field& dx, const Field& dg) const;
+    double seen_frequency(const State& state) const;
     bool try_explicit(State& state, double dt);
     void set_explicit_reactions(const State& state, double dt);
 

@@ -220,6 +220,22 @@ void CornerMap::apply_transposed(const Field& f, Field& q) const {
     gather<false>(f, q);
 }
 
+const Field& CornerMap::applied(const Field& q, Field& buffer) const {
+    if (is_identity())
+        return q;
+    buffer.resize(dof_of_corner_.size());
+    apply(q, buffer);
+    return buffer;
+}
+
+const Field& CornerMap::applied_transposed(const Field& f, Field& buffer) const {
+    if (is_identity())
+        return f;
+    buffer.resize(n_dofs());
+    apply_transposed(f, buffer);
+    return buffer;
+}
+
 void CornerMap::apply_squared_transposed(const Field& k, Field& d) const {
     gather<true>(k, d);
 }

@@ -24,9 +24,14 @@ class CornerMap {
     };
 
     /// `free` (#C): whether a corner is free. Throws Error(Diverged) where a body spreads over more than 2^28 cells.
-    void rebuild(const Field& corners, const std::vector<char>& free, const std::vector<BodyRange>& bodies);
+    void rebuild(const Field& corners,
+                 const std::vector<char>& free,
+                 const std::vector<BodyRange>& bodies);
 
     int n_dofs() const { return n_free() + n_nodes_; }
+
+    /// Whether every corner is free; degrees of freedom are then the corners in their order.
+    bool is_identity() const { return free_corner_.size() == dof_of_corner_.size(); }
 
     int n_free() const { return static_cast<int>(free_corner_.size()); }
 
@@ -48,6 +53,10 @@ class CornerMap {
     /// q = Tᵀ f.   f (#C), q (#dofs)
     void apply_transposed(const Field& f, Field& q) const;
 
+    /// T q and Tᵀ f, in `buffer` or, where T is the identity, without a copy.
+    const Field& applied(const Field& q, Field& buffer) const;
+    const Field& applied_transposed(const Field& f, Field& buffer) const;
+
     /// d_i = Σ_c T_ci² k_c: a stand-in for the diagonal of Tᵀ diag(k) T.   k (#C), d (#dofs)
     void apply_squared_transposed(const Field& k, Field& d) const;
 
@@ -58,7 +67,9 @@ class CornerMap {
     };
 
     void rebuild_body(const Field& corners, const BodyRange& body, int index);
-    void number_nodes(const std::array<int, 3>& n_cells_per_axis, int first_new_cell, const std::vector<int>& base);
+    void number_nodes(const std::array<int, 3>& n_cells_per_axis,
+                      int first_new_cell,
+                      const std::vector<int>& base);
     template <bool squared>
     void gather(const Field& f, Field& q) const;
 
@@ -68,8 +79,9 @@ class CornerMap {
     std::vector<Cell> cells_;
     std::vector<int> slave_corner_;                     // (#slaves) grouped by cell
     std::vector<std::array<double, 8>> slave_weights_;  // (#slaves)
-    std::vector<std::array<int, 8>> node_sources_;      // (#nodes) indices 8 cell + a into cell sums, -1 where none
-    mutable Field cell_sums_;                           // (8 #cells) scratch of the gathers
+    std::vector<std::array<int, 8>>
+        node_sources_;         // (#nodes) indices 8 cell + a into cell sums, -1 where none
+    mutable Field cell_sums_;  // (8 #cells) scratch of the gathers
 
     // Scratch of rebuild(), kept to avoid allocations in every step.
     std::vector<int> cell_of_slave_, cell_start_, node_of_, slave_order_;

@@ -8,15 +8,6 @@ namespace {
 
 constexpr int chunk = 8192;
 
-double dot_product(const Field& a, const Field& b) {
-    return sum_chunks(static_cast<int>(a.size()), chunk, [&](int begin, int end) {
-        Vec3p sum{};
-        for (int i = begin; i < end; ++i)
-            sum += a[i] * b[i];
-        return sum[0] + sum[1] + sum[2];
-    });
-}
-
 }  // namespace
 
 double scaled_norm(const Field& g, const Field& d) {
@@ -58,8 +49,7 @@ LinearSummary solve_linear(Potential& potential,
 
     LinearSummary summary;
     while (rz > enough && summary.iterations < max_iterations) {
-        potential.hessian_product(p, Ap);
-        const double curvature = dot_product(p, Ap);
+        const double curvature = potential.hessian_product(p, Ap);
         ++summary.iterations;
         if (!(curvature > 0)) {
             summary.negative_curvature = true;

@@ -16,8 +16,8 @@ class Potential {
     /// Keeps the Hessian at q for hessian_product() and inverse_diagonal(); `project`: made positive semi-definite.
     virtual void linearize(const Field& q, bool project) = 0;
 
-    /// product = A p.
-    virtual void hessian_product(const Field& p, Field& product) = 0;
+    /// product = A p; returns pᵀ A p.
+    virtual double hessian_product(const Field& p, Field& product) = 0;
 
     /// One over a positive estimate of A's diagonal, zero for components that are held fixed.
     virtual const Field& inverse_diagonal() const = 0;

@@ -60,8 +60,9 @@ class DensePotential : public sim::Potential {
         inverse_diagonal_ = to_field(inverse);
     }
 
-    void hessian_product(const sim::Field& p, sim::Field& product) override {
+    double hessian_product(const sim::Field& p, sim::Field& product) override {
         product = to_field(A_ * to_vector(p));
+        return to_vector(p).dot(to_vector(product));
     }
 
     const sim::Field& inverse_diagonal() const override { return inverse_diagonal_; }
