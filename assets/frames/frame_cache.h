@@ -12,12 +12,14 @@
 #pragma once
 
 #include "assets/base/vector_types.h"
+#include "assets/frames/folder_lock.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -71,7 +73,8 @@ class FrameCacheWriter {
     /// Opens `folder` to write, or to go on writing; `frame_numbers` ascend. Throws Error(Input) where it holds
     /// frames of another fingerprint, naming the keys that differ with old and new values, or where neither list of
     /// frames, on disk and wanted, begins with the other. Nothing is touched then. With `overwrite` whatever frames
-    /// it holds are removed instead. Left-over temporary files are removed.
+    /// it holds are removed instead. Left-over temporary files are removed. Holds the folder while it lives: throws
+    /// Error(Failed) where another process does.
     FrameCacheWriter(std::filesystem::path folder,
                      const Fingerprint& fingerprint,
                      const std::vector<int>& frame_numbers,
@@ -93,6 +96,7 @@ class FrameCacheWriter {
 
   private:
     std::filesystem::path folder_;
+    std::unique_ptr<FolderLock> lock_;
     std::vector<int> frame_numbers_;
     std::vector<std::size_t> n_vertices_;  // (#surfaces)
     int n_whole_frames_ = 0;

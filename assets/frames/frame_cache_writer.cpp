@@ -120,11 +120,16 @@ FrameCacheWriter::FrameCacheWriter(fs::path folder,
         wanted.surface_names.push_back(surface.body + "/" + surface.skin);
         n_vertices_.push_back(surface.rest_positions.size());
     }
+    // Whoever writes there may be about to change what the next lines read.
+    if (fs::is_directory(folder_))
+        lock_ = std::make_unique<FolderLock>(folder_);
     const auto found = overwrite ? std::nullopt : read_manifest(folder_);
     if (found)
         require_same(folder_, *found, wanted);
 
     make_folder(folder_);
+    if (!lock_)
+        lock_ = std::make_unique<FolderLock>(folder_);
     remove_temporaries(folder_, is_cache_file);
     if (!found)
         remove_cache_files(folder_);
