@@ -1,8 +1,8 @@
 #include "sim/elasticity/elasticity.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -102,9 +102,11 @@ double plain_energy(const Block& block, const Field& x) {
             psi = mu / 2 * (F.squaredNorm() - 3) - mu * std::log(J)
                   + lambda / 2 * std::log(J) * std::log(J);
         } else {
-            const Eigen::JacobiSVD<Mat3> svd(F);
-            psi = mu * (svd.singularValues() - Vec3::Ones()).squaredNorm()
-                  + lambda / 2 * (J - 1) * (J - 1);
+            const Vec3 stretches = Eigen::SelfAdjointEigenSolver<Mat3>(F.transpose() * F)
+                                       .eigenvalues()
+                                       .cwiseSqrt();
+            psi =
+                mu * (stretches - Vec3::Ones()).squaredNorm() + lambda / 2 * (J - 1) * (J - 1);
         }
         double hourglass = 0;
         for (int g = 0; g < 8; ++g) {
