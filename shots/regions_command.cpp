@@ -1,7 +1,7 @@
 #include "shots/commands.h"
 #include "shots/request.h"
 #include "shots/stages/progress.h"
-#include "sim/enrichment/interface_enrichment.h"
+#include "sim/enrichment/enrichment.h"
 #include "sim/lattice/lattice.h"
 
 #include <algorithm>

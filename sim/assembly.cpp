@@ -44,14 +44,14 @@ Vec3 centre_of_mass(const Lattice& lattice) {
 AssembledBody::AssembledBody(const Body& body,
                              Lattice made,
                              int first_corner,
-                             double grid_ratio)
+                             const SolverOptions& solver)
     : lattice(std::move(made)),
       begin(first_corner),
       end(first_corner + lattice.n_corners()),
-      cell_size(grid_ratio * lattice.edge),
+      cell_size(solver.grid_ratio * lattice.edge),
       highest_frequency(sim::highest_frequency(lattice)),
       elasticity(lattice, body),
-      enrichment(lattice, cell_size) {
+      enrichment(lattice, solver.enrich, cell_size) {
     for (const Skin& skin : body.skins)
         surfaces.emplace_back(lattice, body, skin);
 }
@@ -59,7 +59,7 @@ AssembledBody::AssembledBody(const Body& body,
 Assembly::Assembly(const Scene& scene) {
     bodies.reserve(scene.bodies.size());
     for (const Body& body : scene.bodies)
-        add_body(body, scene.solver.grid_ratio);
+        add_body(body, scene.solver);
 
     force.assign(n_corners(), Vec3p{});
     for (const Force& item : scene.forces) {
@@ -90,9 +90,9 @@ Assembly::Assembly(const Scene& scene) {
     }
 }
 
-void Assembly::add_body(const Body& body, double grid_ratio) {
+void Assembly::add_body(const Body& body, const SolverOptions& solver) {
     std::vector<std::string> repairs;
-    bodies.emplace_back(body, make_lattice(body, &repairs), n_corners(), grid_ratio);
+    bodies.emplace_back(body, make_lattice(body, &repairs), n_corners(), solver);
     for (const std::string& repair : repairs)
         notes.push_back("body \"" + body.name + "\": " + repair);
 

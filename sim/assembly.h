@@ -6,7 +6,7 @@
 #include "sim/contact/collider_contact.h"
 #include "sim/elasticity/elasticity.h"
 #include "sim/embedding/embedding.h"
-#include "sim/enrichment/interface_enrichment.h"
+#include "sim/enrichment/enrichment.h"
 #include "sim/lattice/lattice.h"
 #include "sim/scene.h"
 
@@ -22,10 +22,13 @@ struct AssembledBody {
     double cell_size = 0;          // of its background grid [m]
     double highest_frequency = 0;  // bound of what its corners swing with at rest [rad/s]
     Elasticity elasticity;
-    InterfaceEnrichment enrichment;
+    Enrichment enrichment;
     std::vector<EmbeddedSurface> surfaces;
 
-    AssembledBody(const Body& body, Lattice made, int first_corner, double grid_ratio);
+    AssembledBody(const Body& body,
+                  Lattice made,
+                  int first_corner,
+                  const SolverOptions& solver);
 };
 
 /// A pin's corners in the scene's field.
@@ -63,7 +66,7 @@ struct Assembly {
     std::vector<ContactCorner> contact_corners() const;
 
   private:
-    void add_body(const Body& body, double grid_ratio);
+    void add_body(const Body& body, const SolverOptions& solver);
     void add_force(const Scene& scene, const DeadLoad& load);
 };
 

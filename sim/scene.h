@@ -143,8 +143,14 @@ struct Probe {
     std::variant<Vec3, std::string> at;  // a material point at rest [m], or a region's name
 };
 
+/// Which domains of an enriched body get corners of their own; any of these.
+struct EnrichmentCriteria {
+    bool interface = true, mixed_cell = false, strain = false;
+};
+
 struct SolverOptions {
     Method method = Method::Enriched;
+    EnrichmentCriteria enrich;
     Steps steps = Steps::Implicit;
     std::optional<double> dt;  // largest step [s]; empty: a tenth of a frame
     double grid_ratio = 2;     // background cell / domain edge, >= 1

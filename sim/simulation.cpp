@@ -129,6 +129,8 @@ std::vector<std::byte> Simulation::checkpoint() const {
         append(bytes, &number, sizeof(double));
     for (const Field* field : impl_->fields())
         append(bytes, field->data(), field->size() * sizeof(Vec3p));
+    for (const AssembledBody& body : impl_->assembly.bodies)
+        append(bytes, body.enrichment.enriched().data(), body.enrichment.enriched().size());
     return bytes;
 }
 
@@ -145,6 +147,11 @@ void Simulation::restore(const std::vector<std::byte>& bytes) {
     for (Field* field : impl_->fields()) {
         field->resize(state.x.size());
         take(field->data(), field->size() * sizeof(Vec3p));
+    }
+    for (AssembledBody& body : impl_->assembly.bodies) {
+        std::vector<char> enriched(body.lattice.n_domains());
+        take(enriched.data(), enriched.size());
+        body.enrichment.restore(std::move(enriched));
     }
     assets::check(next == bytes.size(), "checkpoint of another scene");
     impl_->stepper.refresh(state);

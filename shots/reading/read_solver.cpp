@@ -1,5 +1,7 @@
 #include "shots/reading/readers.h"
 
+#include <algorithm>
+
 namespace shots {
 namespace {
 
@@ -9,11 +11,19 @@ void read_numerics(TableReader& table) {
     table.choice<Only>("kernel", {{"linear", Only::One}}, {"quadratic", "cubic"}, "linear");
     table.choice<Only>("quadrature", {{"one_point", Only::One}}, {"eight_point"}, "one_point");
     table.choice<Only>("elements", {{"hex", Only::One}}, {"tet"}, "hex");
-    table.words("enrich", {"interface"}, {"mixed_cell", "strain"}, {"interface"});
     if (table.has("tolerance")) {
         table.number("tolerance", Dimension::Number, {.most = 1, .above = 0});
         table.not_available("tolerance");
     }
+}
+
+sim::EnrichmentCriteria read_criteria(TableReader& table) {
+    const std::vector<std::string> words =
+        table.words("enrich", {"interface", "mixed_cell", "strain"}, {}, {"interface"});
+    const auto has = [&](const char* word) {
+        return std::find(words.begin(), words.end(), word) != words.end();
+    };
+    return {has("interface"), has("mixed_cell"), has("strain")};
 }
 
 }  // namespace
@@ -43,6 +53,7 @@ sim::SolverOptions read_solver(TableReader table) {
     solver.grid_ratio = table.number(
         "grid_ratio", Dimension::Number, {.least = 1, .most = 100}, solver.grid_ratio);
     solver.damping = table.number("damping", Dimension::Rate, not_negative, solver.damping);
+    solver.enrich = read_criteria(table);
     read_numerics(table);
     table.finish();
     return solver;

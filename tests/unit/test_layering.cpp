@@ -31,7 +31,7 @@ const Arrows allowed = {
     {"sim/grid", {"assets/*", "sim/base"}},
     {"sim/elasticity", {"assets/*", "sim/scene.h", "sim/base", "sim/materials", "sim/lattice"}},
     {"sim/contact", {"assets/*", "sim/scene.h", "sim/base"}},
-    {"sim/enrichment", {"assets/*", "sim/base", "sim/lattice"}},
+    {"sim/enrichment", {"assets/*", "sim/scene.h", "sim/base", "sim/lattice"}},
     {"sim/embedding", {"assets/*", "sim/lattice"}},
 
     {"render", {"render/*", "assets/*"}},

@@ -1,8 +1,9 @@
 #include "assets/base/error.h"
-#include "sim/enrichment/interface_enrichment.h"
+#include "sim/enrichment/enrichment.h"
 #include "tests/support/box_body.h"
 #include "tests/support/random_fields.h"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -22,6 +23,10 @@ sim::Lattice layered(const std::array<int, 3>& n,
                           k % 2 ? 1e6 : 1e5));
     return sim::make_lattice(body);
 }
+
+constexpr sim::EnrichmentCriteria interface {
+    true, false, false
+}, mixed_cell{false, true, false}, strain{false, false, true};
 
 sim::Field rest(const sim::Lattice& lattice) {
     sim::Field corners;
@@ -64,7 +69,7 @@ TEST_CASE("domains with their centre in the cell of a boundary domain's centre a
 
     std::vector<char> free(corners.size(), 0), expected_free(corners.size(), 0);
     free[3] = expected_free[3] = 1;  // as a pin would have it
-    sim::InterfaceEnrichment enrichment(lattice, h);
+    sim::Enrichment enrichment(lattice, interface, h);
     enrichment.update(lattice, corners.data(), free.data());
 
     const auto centre_cell = [&](int p) {
@@ -93,7 +98,7 @@ TEST_CASE("a body of one material is never enriched") {
     const sim::Lattice lattice = layered({3, 1, 1}, 0.1, 0, {});
     const sim::Field corners = rest(lattice);
     std::vector<char> free(corners.size(), 0);
-    sim::InterfaceEnrichment enrichment(lattice, 0.2);
+    sim::Enrichment enrichment(lattice, interface, 0.2);
     enrichment.update(lattice, corners.data(), free.data());
     CHECK(free == std::vector<char>(corners.size(), 0));
     CHECK(enrichment.enriched() == std::vector<char>(3, 0));
@@ -104,6 +109,84 @@ TEST_CASE("a layered body that has flown apart is an error") {
     sim::Field corners = rest(lattice);
     corners[0] = sim::Vec3p{1e300, 0, 0, 0};
     std::vector<char> free(corners.size(), 0);
-    sim::InterfaceEnrichment enrichment(lattice, 0.2);
+    sim::Enrichment enrichment(lattice, interface, 0.2);
     CHECK_THROWS_AS(enrichment.update(lattice, corners.data(), free.data()), assets::Error);
+}
+
+TEST_CASE("mixed_cell enriches where a cell holds two regions that are no neighbours") {
+    // One hard domain in a corner of a soft body with a gap around it: no face in common.
+    sim::Body body = tests::box_body({4, 2, 2}, 1);
+    body.regions.push_back(tests::region("hard", {assets::Box{{3, 1, 1}, {4, 2, 2}}, {}}, 1e6));
+    sim::Lattice lattice = sim::make_lattice(body);
+    // Take its face neighbours out of the lattice: those whose cells differ from (3,1,1) along one axis.
+    for (int p = lattice.n_domains() - 1; p >= 0; --p) {
+        const auto& cell = lattice.cell[p];
+        if (std::abs(cell[0] - 3) + std::abs(cell[1] - 1) + std::abs(cell[2] - 1) != 1)
+            continue;
+        lattice.cell.erase(lattice.cell.begin() + p);
+        lattice.corners.erase(lattice.corners.begin() + p);
+        lattice.region.erase(lattice.region.begin() + p);
+    }
+    REQUIRE(sim::boundary_domains(lattice).empty());
+    const sim::Field corners = rest(lattice);
+    const auto n_enriched = [&](const sim::EnrichmentCriteria& criteria) {
+        std::vector<char> free(corners.size(), 0);
+        sim::Enrichment enrichment(lattice, criteria, 2.0);  // cells [0,2) and [2,4) along x
+        enrichment.update(lattice, corners.data(), free.data());
+        int n = 0;
+        for (int p = 0; p < lattice.n_domains(); ++p) {
+            n += enrichment.enriched()[p];
+            CHECK(enrichment.enriched()[p] <= (lattice.cell[p][0] >= 2));
+        }
+        return n;
+    };
+    CHECK(n_enriched(interface) == 0);
+    CHECK(n_enriched(mixed_cell) == 5);  // 8 in the right cell without three neighbours
+}
+
+TEST_CASE("strain enriches squashed domains until they have recovered by a margin") {
+    const sim::Lattice lattice = layered({1, 1, 1}, 1, 0, {});
+    sim::Enrichment enrichment(lattice, strain, 2.0);
+    const auto enriched_at = [&](const Vec3& stretch) {
+        sim::Field corners = rest(lattice);
+        const Mat3 R = Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+        for (sim::Vec3p& x : corners)
+            x = sim::padded(R * stretch.cwiseProduct(sim::unpadded(x)));
+        std::vector<char> free(corners.size(), 0);
+        enrichment.update(lattice, corners.data(), free.data());
+        CHECK(free == std::vector<char>(8, enrichment.enriched()[0]));
+        return bool(enrichment.enriched()[0]);
+    };
+    CHECK_FALSE(enriched_at({1, 1, 1}));
+    CHECK_FALSE(enriched_at({1, 0.55, 1}));
+    CHECK(enriched_at({1, 0.49, 1}));
+    CHECK(enriched_at({1, 0.55, 1}));  // not yet
+    CHECK_FALSE(enriched_at({1, 0.61, 1}));
+    CHECK(enriched_at({3, 1, 1}));  // 1/3 of the largest
+    CHECK(enriched_at({2.5, 1, 1}));
+    CHECK_FALSE(enriched_at({2, 1, 1}));
+}
+
+TEST_CASE("a domain near the border of a marked cell does not flicker") {
+    // Two domains, of two regions; the second one's centre swings around the border of the first one's cell.
+    const sim::Lattice lattice = layered({4, 1, 1}, 1, 0, {1});
+    sim::Enrichment enrichment(lattice, interface, 2.0);
+    const auto enriched_at = [&](double shift) {
+        sim::Field corners = rest(lattice);
+        for (sim::Vec3p& x : corners)
+            x[0] += shift;
+        std::vector<char> free(corners.size(), 0);
+        enrichment.update(lattice, corners.data(), free.data());
+        return enrichment.enriched();
+    };
+    using Flags = std::vector<char>;
+    CHECK(enriched_at(0)
+          == Flags{1, 1, 0, 0});  // centres 0.5, 1.5 | 2.5, 3.5; boundary: the first two
+    CHECK(enriched_at(0.6) == Flags{1, 1, 1, 0});  // 1.1 | 2.1, 3.1 | 4.1
+    CHECK(
+        enriched_at(0.4)
+        == Flags{
+            1, 1, 1, 0});  // 0.9, 1.9 | 2.9, 3.9: the second is 0.1 from the cell of the third
+    CHECK(enriched_at(-0.2)
+          == Flags{1, 1, 0, 0});  // 0.3, 1.3 | 2.3: 0.7 away, beyond a quarter of a cell
 }
