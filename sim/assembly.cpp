@@ -12,7 +12,7 @@ namespace sim {
 namespace {
 
 constexpr double contact_stiffness =
-    20;  // k / (E s): depth below 1e-3 s under 2% of E as pressure
+    100;  // k / (E s): depth below 1e-3 s under 10% of E as pressure
 
 /// Young's modulus of a domain's mixture.   [Pa]
 double young_modulus(const Lattice& lattice, int p) {
@@ -118,6 +118,13 @@ void Assembly::add_force(const Scene& scene, const DeadLoad& load) {
         force[bodies[b].begin + c] += padded(load.total * (lattice.corner_volume[c] / volume));
 }
 
+double Assembly::finest_edge() const {
+    double edge = std::numeric_limits<double>::infinity();
+    for (const AssembledBody& body : bodies)
+        edge = std::min(edge, body.lattice.edge);
+    return edge;
+}
+
 int Assembly::body_of(int corner) const {
     const auto after = std::upper_bound(
         bodies.begin(), bodies.end(), corner, [](int c, const AssembledBody& body) {
@@ -140,8 +147,11 @@ std::vector<ContactCorner> Assembly::contact_corners() const {
         for (int c = 0; c < lattice.n_corners(); ++c)
             if (n_domains[c] < 8)
                 result.push_back({body.begin + c,
+                                  static_cast<int>(&body - bodies.data()),
                                   lattice.corner_outside[c],
-                                  contact_stiffness * modulus[c] * lattice.edge});
+                                  contact_stiffness * modulus[c] * lattice.edge,
+                                  lattice.corner_mass[c],
+                                  lattice.edge});
     }
     return result;
 }

@@ -59,6 +59,9 @@ struct Assembly {
 
     int n_corners() const { return static_cast<int>(rest.size()); }
 
+    /// The smallest domain's edge [m].
+    double finest_edge() const;
+
     /// Index of the body that holds a corner.
     int body_of(int corner) const;
 

@@ -55,7 +55,7 @@ bool Stepper::try_equilibrium(State& state,
         q_[i] =
             (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]) * (prescribed_.target[c] - state.x[c]);
     }
-    colliders_.begin_step(state.x, 0);
+    colliders_.begin_step(state.x, state.top_speed, time_end, 0);
 
     NewtonOptions options;
     options.tolerance = static_tolerance;

@@ -50,7 +50,7 @@ double Stepper::seen_frequency(const State& state) const {
 }
 
 bool Stepper::try_explicit(State& state, double dt) {
-    begin_step(state, dt);
+    begin_step(state, dt, Scheme::Verlet);
     const int n_corners = static_cast<int>(state.x.size()), n_dofs = map_.n_dofs();
     const auto& step = potential_.step();
     const double damped = 1 + scene_.solver.damping * dt_hat_;
@@ -63,10 +63,15 @@ bool Stepper::try_explicit(State& state, double dt) {
                  * (step.q_tilde[i] - (dt_hat_ * inverse_mass_[i] / damped) * force[i]);
     moved_ = map_.applied(q_, moved_);
     exchange_contact(state, dt);
+    summary_ = {};
+    if (colliders_.largest_step(state.x, moved_, state.time, dt) < dt) {
+        summary_.termination = Termination::Unstable;  // a corner might pass through a collider
+        return false;
+    }
+    restrain_by_colliders(state, dt);
     drift(dt);
 
     // The forces there. The motion must not be faster than the step can follow.
-    summary_ = {};
     if (!std::isfinite(potential_.elastic_gradient(x_end_, end_gradient_)))
         return false;
     if (seen_frequency(state) * dt > most_excited) {
@@ -74,12 +79,11 @@ bool Stepper::try_explicit(State& state, double dt) {
         return false;
     }
 
-    // Kick by the other half, and by colliders, each corner for itself implicitly: they are far stiffer.
+    // Kick by the other half.
     commit(state, dt);
     Field& kick = corner_;
     for (int c = 0; c < n_corners; ++c)
         kick[c] = dt_hat_ * (assembly_.force[c] - end_gradient_[c]);
-    colliders_.add_impulses(state.x, assembly_.mass, dt, kick);
     Field& dq = q_;
     const Field& impulse = map_.applied_transposed(kick, buffer);
     for (int i = 0; i < n_dofs; ++i)
@@ -92,6 +96,14 @@ bool Stepper::try_explicit(State& state, double dt) {
     }
     std::swap(gradient_, end_gradient_);
     return true;
+}
+
+void Stepper::restrain_by_colliders(const State& state, double dt) {
+    if (colliders_.empty())
+        return;
+    Field change = moved_;
+    colliders_.restrain(state.x, dt, change);
+    move_through_grid(change);
 }
 
 void Stepper::set_explicit_reactions(const State& state, double dt) {

@@ -13,7 +13,38 @@ constexpr double semi_implicit_forcing = 1e-6;
 }  // namespace
 
 bool Stepper::try_implicit(State& state, double dt) {
-    begin_step(state, dt);
+    if (!solve_step(state, dt, Scheme::BackwardEuler))
+        return false;
+    end_implicit(state, dt);
+    return true;
+}
+
+bool Stepper::try_bdf2(State& state, double dt) {
+    // BDF2 takes the motion before as smooth. Where a corner begins or ceases to touch a collider it is not: the velocity
+    // jumps, and to continue the jump would create energy. Such a step is one of backward Euler, as is the one after it.
+    const bool is_smooth = state.last_dt == 0 || !state.x_before.empty();
+    bool solved = solve_step(state, dt, is_smooth ? Scheme::Bdf2 : Scheme::BackwardEuler);
+    const bool has_event = solved && colliders_.has_changed_touch(potential_.positions());
+    if (has_event && is_smooth)
+        solved = solve_step(state, dt, Scheme::BackwardEuler);
+    if (!solved)
+        return false;
+
+    Field x_before = state.x, v_before = state.v;
+    const Field moved = moved_;
+    end_implicit(state, dt);
+    if (has_event)
+        x_before.clear();
+    // An impulse of contact on the grid is no acceleration to continue either: it shifts the velocity before as well.
+    for (std::size_t c = 0; c < moved.size(); ++c)
+        v_before[c] += moved_[c] - moved[c];
+    state.x_before = std::move(x_before);
+    state.v_before = std::move(v_before);
+    return true;
+}
+
+bool Stepper::solve_step(const State& state, double dt, Scheme scheme) {
+    begin_step(state, dt, scheme);
     guess(state);
 
     NewtonOptions options;
@@ -28,27 +59,23 @@ bool Stepper::try_implicit(State& state, double dt) {
     cg_iterations += summary_.linear_iterations;
     if (summary_.termination != Termination::Converged)
         return false;
-
     moved_.resize(state.x.size());
     map_.apply(q_, moved_);
     balance_momentum();
-    set_reactions();
+    return true;
+}
 
+void Stepper::end_implicit(State& state, double dt) {
+    set_reactions();
     // What inner forces gave, before contact on the grid changes what moves the corners.
     const auto& step = potential_.step();
     Field& inner = q_;
     for (int i = 0; i < map_.n_dofs(); ++i)
         inner[i] = (q_[i] - step.q_tilde[i]) * step.is_free[i];
     map_.apply(inner, state.inner_impulse);
-    const Field before = scene_.solver.steps == Steps::Bdf2 ? moved_ : Field{};
     exchange_contact(state, dt_hat_);
     drift(dt_hat_);
     commit(state, dt);
-
-    // An impulse of contact is no acceleration that BDF2 may continue: it shifts the velocity before as well.
-    for (std::size_t c = 0; c < before.size(); ++c)
-        state.v_before[c] += moved_[c] - before[c];
-    return true;
 }
 
 void Stepper::guess(const State& state) {

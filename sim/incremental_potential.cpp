@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sim {
 
@@ -115,6 +116,13 @@ double IncrementalPotential::hessian_product(const Field& p, Field& product) {
         }
         return sum[0] + sum[1] + sum[2];
     });
+}
+
+double IncrementalPotential::value_noise() const {
+    double scale = 0;
+    for (const ElasticBody& body : bodies_)
+        scale += body.energy_scale;
+    return std::numeric_limits<double>::epsilon() * scale;
 }
 
 double IncrementalPotential::gradient_scale() const {

@@ -23,6 +23,8 @@ class IncrementalPotential : public Potential {
     struct ElasticBody {
         Elasticity* elasticity = nullptr;
         int begin = 0, end = 0;
+        double energy_scale =
+            0;  // Σ V (lambda + 2 mu): its energy at rest is the difference of terms as large [J]
     };
 
     IncrementalPotential(const CornerMap& map,
@@ -51,6 +53,8 @@ class IncrementalPotential : public Potential {
     double gradient_scale() const override;
 
     double gradient_noise() const override { return noise_; }
+
+    double value_noise() const override;
 
     /// Corner positions of the last q evaluated.
     const Field& positions() const { return x_; }

@@ -133,9 +133,26 @@ struct PlaneShape {
     Vec3 point{0, 0, 0}, normal{0, 0, 1};  // solid on the side opposite to the normal
 };
 
+/// Where a collider is at a time, turned about its centre: R = Rz Ry Rx of the angles.
+struct ColliderKey {
+    double time = 0;          // [s]
+    Vec3 translate{0, 0, 0};  // [m]
+    Vec3 rotate{0, 0, 0};     // [rad]
+};
+
 struct Collider {
-    std::variant<PlaneShape, assets::Sphere, assets::Box> shape;
+    std::variant<PlaneShape, assets::Shape, assets::MeshFile> shape;  // a mesh is closed
     Friction friction;
+    std::vector<ColliderKey> keys = {};  // by ascending time; none: it stands still
+
+    /// Planes, and spheres and boxes that stand still, are drawn from the shot file; others from the frame cache.
+    bool is_drawn_from_cache() const {
+        const auto* simple = std::get_if<assets::Shape>(&shape);
+        const bool is_simple = simple != nullptr
+                               && (std::holds_alternative<assets::Sphere>(*simple)
+                                   || std::holds_alternative<assets::Box>(*simple));
+        return !std::holds_alternative<PlaneShape>(shape) && (!is_simple || !keys.empty());
+    }
 };
 
 struct Probe {

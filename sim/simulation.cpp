@@ -1,6 +1,7 @@
 #include "sim/simulation.h"
 
 #include "assets/base/error.h"
+#include "sim/collider_surface.h"
 #include "sim/report.h"
 #include "sim/stepper.h"
 
@@ -27,9 +28,15 @@ struct Simulation::Impl {
           dt(scene.solver.dt.value_or(frame_time / steps_per_frame)),
           assembly(scene),
           stepper(scene, assembly) {
+        for (std::size_t k = 0; k < scene.colliders.size(); ++k)
+            if (scene.colliders[k].is_drawn_from_cache())
+                collider_surfaces.emplace_back(
+                    scene.colliders[k], static_cast<int>(k), assembly.finest_edge());
         state.x = assembly.rest;
         state.v = assembly.initial_velocity;
         state.inner_impulse.assign(state.x.size(), Vec3p{});
+        for (const Body& body : scene.bodies)
+            state.top_speed.push_back(body.velocity.norm());
         if (scene.solver.steps == Steps::Static)
             stepper.equilibrium(state, 0);
         else
@@ -39,7 +46,7 @@ struct Simulation::Impl {
     /// The arrays of the state, as a checkpoint holds them; those of BDF2 last.
     std::vector<Field*> fields() {
         std::vector<Field*> result = {&state.x, &state.v, &state.inner_impulse};
-        if (scene.solver.steps == Steps::Bdf2 && state.last_dt > 0) {
+        if (!state.x_before.empty()) {
             result.push_back(&state.x_before);
             result.push_back(&state.v_before);
         }
@@ -50,6 +57,7 @@ struct Simulation::Impl {
     double dt;
     Assembly assembly;
     Stepper stepper;
+    std::vector<ColliderSurface> collider_surfaces;
     State state;
 };
 
@@ -59,13 +67,13 @@ Simulation::Simulation(Scene scene, double frame_time)
 Simulation::~Simulation() = default;
 
 void Simulation::advance_to(double time) {
-    auto& [scene, dt, assembly, stepper, state] = *impl_;
+    Stepper& stepper = impl_->stepper;
+    State& state = impl_->state;
     stepper.newton_iterations = stepper.cg_iterations = stepper.steps = 0;
-    if (scene.solver.steps == Steps::Static) {
+    if (impl_->scene.solver.steps == Steps::Static)
         stepper.equilibrium(state, time);
-        return;
-    }
-    stepper.advance(state, time, dt);
+    else
+        stepper.advance(state, time, impl_->dt);
 }
 
 double Simulation::time() const {
@@ -105,6 +113,8 @@ std::vector<assets::CachedSurface> Simulation::surfaces() const {
     for (const AssembledBody& body : impl_->assembly.bodies)
         for (const EmbeddedSurface& surface : body.surfaces)
             result.push_back(surface.cached());
+    for (const ColliderSurface& surface : impl_->collider_surfaces)
+        result.push_back(surface.cached());
     return result;
 }
 
@@ -119,14 +129,18 @@ std::vector<assets::SurfaceFrame> Simulation::deformed_surfaces() const {
                 corners,
                 shows_enriched ? body.enrichment.enriched() : std::vector<char>{}));
     }
+    for (const ColliderSurface& surface : impl_->collider_surfaces)
+        result.push_back(surface.at(impl_->state.time));
     return result;
 }
 
 std::vector<std::byte> Simulation::checkpoint() const {
     std::vector<std::byte> bytes;
     const State& state = impl_->state;
-    for (const double number : {state.time, state.last_dt, state.dt_limit})
+    const double has_history = state.x_before.empty() ? 0 : 1;
+    for (const double number : {state.time, state.last_dt, state.dt_limit, has_history})
         append(bytes, &number, sizeof(double));
+    append(bytes, state.top_speed.data(), state.top_speed.size() * sizeof(double));
     for (const Field* field : impl_->fields())
         append(bytes, field->data(), field->size() * sizeof(Vec3p));
     for (const AssembledBody& body : impl_->assembly.bodies)
@@ -142,8 +156,11 @@ void Simulation::restore(const std::vector<std::byte>& bytes) {
         std::memcpy(to, bytes.data() + next, size);
         next += size;
     };
-    for (double* number : {&state.time, &state.last_dt, &state.dt_limit})
+    double has_history = 0;
+    for (double* number : {&state.time, &state.last_dt, &state.dt_limit, &has_history})
         take(number, sizeof(double));
+    state.x_before.resize(has_history > 0 ? state.x.size() : 0);
+    take(state.top_speed.data(), state.top_speed.size() * sizeof(double));
     for (Field* field : impl_->fields()) {
         field->resize(state.x.size());
         take(field->data(), field->size() * sizeof(Vec3p));

@@ -61,7 +61,8 @@ class Simulation {
     std::vector<ProbeRow> probes() const;
     std::vector<PinRow> pins() const;
 
-    /// Surfaces of all skins of all bodies, in order: topology, and their state now.
+    /// Surfaces of all skins of all bodies, in order, then of the colliders that pictures need: topology, and their
+    /// state now.
     std::vector<assets::CachedSurface> surfaces() const;
     std::vector<assets::SurfaceFrame> deformed_surfaces() const;
 

@@ -4,6 +4,7 @@
 #include "sim/base/field.h"
 
 #include <limits>
+#include <vector>
 
 namespace sim {
 
@@ -15,7 +16,8 @@ struct State {
         inner_impulse;  // velocity that inner forces gave in the last step, a guess for the next [m/s]
     Field x_before,
         v_before;  // where the last step began; kept by BDF2 alone, empty before its first step
-    double last_dt = 0;  // of the last step, 0 before the first [s]
+    std::vector<double> top_speed;  // (#bodies) that any corner has reached lately [m/s]
+    double last_dt = 0;             // of the last step, 0 before the first [s]
     double dt_limit = std::numeric_limits<
         double>::infinity();  // what failed and unstable steps left of dt [s]
 };

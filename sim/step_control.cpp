@@ -22,7 +22,10 @@ void Stepper::advance(State& state, double end, double dt) {
         // Equal steps to the end, so that the last one is no sliver.
         const double remaining = end - state.time;
         const double longest = is_explicit ? std::min(dt, explicit_limit(state)) : dt;
-        const double allowed = std::min(longest, state.dt_limit);
+        const double allowed =
+            std::min({longest,
+                      state.dt_limit,
+                      colliders_.largest_step(state.x, state.v, state.time, longest)});
         const double n = std::max(1.0, std::ceil(remaining / allowed - rounding));
         const double length = remaining / n;
         if (try_step(state, length)) {
@@ -48,8 +51,14 @@ void Stepper::advance(State& state, double end, double dt) {
 }
 
 bool Stepper::try_step(State& state, double dt) {
-    return scene_.solver.steps == Steps::Explicit ? try_explicit(state, dt)
-                                                  : try_implicit(state, dt);
+    switch (scene_.solver.steps) {
+        case Steps::Explicit:
+            return try_explicit(state, dt);
+        case Steps::Bdf2:
+            return try_bdf2(state, dt);
+        default:
+            return try_implicit(state, dt);
+    }
 }
 
 }  // namespace sim

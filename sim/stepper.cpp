@@ -13,10 +13,19 @@ namespace {
 // per step, so that halving dt does not drain more (the paper keeps 0.95 per step).
 constexpr double pic_rate = 5;  // [1/s]
 
+constexpr double forgetting = 1;  // rate at which a body's top speed fades [1/s]
+
+double energy_scale(const Lattice& lattice) {
+    double sum = 0;
+    for (int p = 0; p < lattice.n_domains(); ++p)
+        sum += lattice.domain_volume(p) * (lattice.lambda[p] + 2 * lattice.mu[p]);
+    return sum;
+}
+
 std::vector<IncrementalPotential::ElasticBody> elastic_bodies(Assembly& assembly) {
     std::vector<IncrementalPotential::ElasticBody> result;
     for (AssembledBody& body : assembly.bodies)
-        result.push_back({&body.elasticity, body.begin, body.end});
+        result.push_back({&body.elasticity, body.begin, body.end, energy_scale(body.lattice)});
     return result;
 }
 
@@ -31,13 +40,13 @@ Stepper::Stepper(const Scene& scene, Assembly& assembly)
         ranges_.push_back({body.begin, body.end, body.cell_size});
 }
 
-void Stepper::begin_step(const State& state, double dt) {
+void Stepper::begin_step(const State& state, double dt, Scheme scheme) {
     prescribe(scene_, assembly_, state.time, state.time + dt, prescribed_);
     choose_free_corners(state.x);
-    start_scheme(state, dt);
+    start_scheme(state, dt, scheme);
     transfer(state);
     prescribe_dofs(state);
-    colliders_.begin_step(state.x, dt);
+    colliders_.begin_step(state.x, state.top_speed, state.time, dt);
 }
 
 void Stepper::choose_free_corners(const Field& x) {
@@ -52,12 +61,12 @@ void Stepper::choose_free_corners(const Field& x) {
     map_.rebuild(x, free_, ranges_);
 }
 
-void Stepper::start_scheme(const State& state, double dt) {
+void Stepper::start_scheme(const State& state, double dt, Scheme scheme) {
     auto& step = potential_.step();
     step.x_n = state.x;
     v_hat_ = state.v;
     dt_hat_ = dt;
-    if (scene_.solver.steps == Steps::Bdf2) {
+    if (scheme == Scheme::Bdf2) {
         // With w the ratio to the step before: x_{n+1} = x_n + w²/(1+2w) (x_n - x_{n-1}) + (1+w)/(1+2w) dt v_{n+1}.
         const bool is_first = state.x_before.empty();
         const double ratio = is_first ? 1 : dt / state.last_dt;
@@ -70,7 +79,7 @@ void Stepper::start_scheme(const State& state, double dt) {
             v_hat_[c] += history * dv;
         }
         dt_hat_ = dt * (1 + ratio) / (1 + 2 * ratio);
-    } else if (scene_.solver.steps == Steps::Explicit) {
+    } else if (scheme == Scheme::Verlet) {
         dt_hat_ = dt / 2;  // of the first kick
     }
     step.dt = dt_hat_;
@@ -159,17 +168,21 @@ void Stepper::exchange_contact(const State& state, double dt) {
                      scene_.contact,
                      change);
 
+    move_through_grid(change);
+}
+
+void Stepper::move_through_grid(Field& wanted) {
     // A slaved corner can only move as its grid does. Were it given more, the next step would not know of it, ask for
-    // the same again, and pile up speed: so contact's change goes through the map, T M⁻¹ Tᵀ m, free corners as it is.
+    // the same again, and pile up speed: so a change goes through the map, T M⁻¹ Tᵀ m, free corners as it is.
     Field dofs(map_.n_dofs());
     for (std::size_t c = 0; c < moved_.size(); ++c)
-        change[c] = assembly_.mass[c] * (change[c] - moved_[c]);
-    map_.apply_transposed(change, dofs);
+        wanted[c] = assembly_.mass[c] * (wanted[c] - moved_[c]) * prescribed_.is_free[c];
+    map_.apply_transposed(wanted, dofs);
     for (int i = 0; i < map_.n_dofs(); ++i)
         dofs[i] *= inverse_mass_[i];
-    map_.apply(dofs, change);
+    map_.apply(dofs, wanted);
     for (std::size_t c = 0; c < moved_.size(); ++c)
-        moved_[c] += change[c];
+        moved_[c] += wanted[c];
 }
 
 void Stepper::drift(double length) {
@@ -184,10 +197,6 @@ void Stepper::drift(double length) {
 }
 
 void Stepper::commit(State& state, double dt) {
-    if (scene_.solver.steps == Steps::Bdf2) {
-        state.x_before = state.x;
-        state.v_before = state.v;
-    }
     // Corner velocities: the new ones of the degrees of freedom, and for slaved corners what the grid could not see
     // of the old ones (FLIP), fading at the rate of PIC.
     const Field& seen = map_.applied(q_n_, corner_);
@@ -195,12 +204,19 @@ void Stepper::commit(State& state, double dt) {
     for (std::size_t c = 0; c < state.v.size(); ++c)
         state.v[c] = moved_[c] + (free_[c] ? Vec3p{} : keep * (v_hat_[c] - seen[c]));
     std::swap(state.x, x_end_);
+    for (std::size_t b = 0; b < ranges_.size(); ++b) {
+        double fastest = 0;
+        for (int c = ranges_[b].begin; c < ranges_[b].end; ++c)
+            fastest = std::max(fastest, dot(state.v[c], state.v[c]));
+        state.top_speed[b] =
+            std::max(std::sqrt(fastest), std::exp(-forgetting * dt) * state.top_speed[b]);
+    }
     state.last_dt = dt;
     state.time += dt;
 }
 
 void Stepper::refresh(const State& state) {
-    begin_step(state, 0);
+    begin_step(state, 0, Scheme::BackwardEuler);
     q_ = q_n_;
     Field gradient;
     potential_.value_and_gradient(q_, gradient);

@@ -49,9 +49,10 @@ class Stepper {
     bool try_step(State& state, double dt);
 
     // stepper.cpp: what all steps share
-    void begin_step(const State& state, double dt);
+    enum class Scheme { BackwardEuler, Bdf2, Verlet };
+    void begin_step(const State& state, double dt, Scheme scheme);
     void choose_free_corners(const Field& x);
-    void start_scheme(const State& state, double dt);
+    void start_scheme(const State& state, double dt, Scheme scheme);
 
     struct Motion {
         Vec3p dx{}, dv{};
@@ -61,11 +62,15 @@ class Stepper {
     void transfer(const State& state);
     void prescribe_dofs(const State& state);
     void exchange_contact(const State& state, double dt);
+    void move_through_grid(Field& wanted);
     void drift(double length);
     void commit(State& state, double dt);
 
     // implicit_step.cpp
     bool try_implicit(State& state, double dt);
+    bool try_bdf2(State& state, double dt);
+    bool solve_step(const State& state, double dt, Scheme scheme);
+    void end_implicit(State& state, double dt);
     void guess(const State& state);
     void balance_momentum();
     void set_reactions();
@@ -74,6 +79,7 @@ class Stepper {
     double explicit_limit(const State& state) const;
     double seen_frequency(const State& state) const;
     bool try_explicit(State& state, double dt);
+    void restrain_by_colliders(const State& state, double dt);
     void set_explicit_reactions(const State& state, double dt);
 
     // equilibrium.cpp

@@ -21,14 +21,20 @@ sim::PlaneShape read_plane(TableReader table) {
     return plane;
 }
 
-void read_keys(TableReader& collider) {
-    for (TableReader& key : collider.tables("keys")) {
-        key.number("time", Dimension::Time, not_negative);
-        key.vector("translate", Dimension::Length, Vec3(Vec3::Zero()));
-        key.vector("rotate", Dimension::Angle, Vec3(Vec3::Zero()));
-        key.finish();
+std::vector<sim::ColliderKey> read_keys(TableReader& collider) {
+    std::vector<sim::ColliderKey> keys;
+    for (TableReader& table : collider.tables("keys")) {
+        sim::ColliderKey key;
+        key.time = table.number("time", Dimension::Time, not_negative);
+        key.translate = table.vector("translate", Dimension::Length, Vec3(Vec3::Zero()));
+        key.rotate = table.vector("rotate", Dimension::Angle, Vec3(Vec3::Zero()));
+        if (!keys.empty() && key.time <= keys.back().time)
+            table.error("time",
+                        "the times of keys ascend: this one is not after the one before");
+        table.finish();
+        keys.push_back(key);
     }
-    collider.not_available("keys");
+    return keys;
 }
 
 sim::Collider read_collider(TableReader& table) {
@@ -37,19 +43,15 @@ sim::Collider read_collider(TableReader& table) {
         table.one_of({"plane", "sphere", "box", "cylinder", "capsule", "mesh"});
     if (word == "plane") {
         collider.shape = read_plane(table.table("plane"));
-    } else if (word == "sphere") {
-        collider.shape = std::get<assets::Sphere>(read_shape(table, word));
-    } else if (word == "box") {
-        collider.shape = std::get<assets::Box>(read_shape(table, word));
+    } else if (word == "mesh") {
+        collider.shape = assets::MeshFile{table.file(word)};
     } else if (!word.empty()) {
-        if (word == "mesh")
-            table.file(word);
-        else
-            read_shape(table, word);
-        table.not_available(word);
+        collider.shape = read_shape(table, word);
     }
     collider.friction = read_friction(table);
-    read_keys(table);
+    collider.keys = read_keys(table);
+    if (word == "plane" && !collider.keys.empty())
+        table.error("keys", "a plane stands still: use a box where a wall moves");
     table.finish();
     return collider;
 }

@@ -79,14 +79,18 @@ render::Prop prop_of(const sim::Collider& collider) {
         prop.kind = render::Prop::Kind::Plane;
         prop.point = plane->point;
         prop.normal = plane->normal;
-    } else if (const auto* sphere = std::get_if<assets::Sphere>(&collider.shape)) {
+        return prop;
+    }
+    const auto& shape = std::get<assets::Shape>(collider.shape);
+    if (const auto* sphere = std::get_if<assets::Sphere>(&shape)) {
         prop.kind = render::Prop::Kind::Sphere;
         prop.center = sphere->center;
         prop.radius = sphere->radius;
-    } else if (const auto* box = std::get_if<assets::Box>(&collider.shape)) {
+    } else {
+        const auto& box = std::get<assets::Box>(shape);
         prop.kind = render::Prop::Kind::Box;
-        prop.min = box->min;
-        prop.max = box->max;
+        prop.min = box.min;
+        prop.max = box.max;
     }
     return prop;
 }
@@ -101,7 +105,8 @@ void read_picture(TableReader& root,
     picture.light_rig = read_light(root.picture_table("light"));
     read_output(root.picture_table("output"), picture);
     for (const sim::Collider& collider : colliders)
-        picture.props.push_back(prop_of(collider));
+        if (!collider.is_drawn_from_cache())
+            picture.props.push_back(prop_of(collider));
 }
 
 std::filesystem::path read_output_folder(TableReader& root, const std::string& shot_name) {

@@ -1,8 +1,5 @@
 #include "sim/contact/collider_contact.h"
 
-#include "assets/generators/shape.h"
-
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -14,88 +11,136 @@ namespace sim {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double slip_speed = 1e-3;  // [m/s]
-
-struct Distance {
-    double gap = 0;
-    Vec3 normal{0, 0, 1};  // outward of the collider
-};
-
-Distance distance_to(const PlaneShape& plane, const Vec3& x) {
-    const Vec3 n = plane.normal.normalized();
-    return {(x - plane.point).dot(n), n};
-}
-
-Distance distance_to(const assets::Sphere& sphere, const Vec3& x) {
-    const Vec3 r = x - sphere.center;
-    const double length = r.norm();
-    return {length - sphere.radius, length > 0 ? Vec3(r / length) : Vec3(0, 0, 1)};
-}
-
-Distance distance_to(const assets::Box& box, const Vec3& x) {
-    const Vec3 nearest = x.cwiseMax(box.min).cwiseMin(box.max);
-    const Vec3 r = x - nearest;
-    const double length = r.norm();
-    if (length > 0)
-        return {length, r / length};
-    // Inside: out through the nearest face.
-    Distance inside{-infinity, {}};
-    for (int k = 0; k < 3; ++k)
-        for (const double side : {-1.0, 1.0}) {
-            const double gap = side > 0 ? x[k] - box.max[k] : box.min[k] - x[k];
-            if (gap > inside.gap)
-                inside = {gap, side * Vec3::Unit(k)};
-        }
-    return inside;
-}
+constexpr double slip_speed = 1e-3;    // [m/s]
+constexpr double impact_depth = 0.01;  // in domain edges
+constexpr double share_of_thickness =
+    0.4;  // that a corner may pass in a step where it is about to touch
 
 Vec3 tangential(const Vec3& u, const Vec3& normal) {
     return u - normal * normal.dot(u);
 }
 
+double finest_edge(const std::vector<ContactCorner>& corners) {
+    double edge = infinity;
+    for (const ContactCorner& corner : corners)
+        edge = std::min(edge, corner.edge);
+    return edge;
+}
+
 }  // namespace
 
-ColliderContact::ColliderContact(std::vector<Collider> colliders,
+ColliderContact::ColliderContact(const std::vector<Collider>& colliders,
                                  std::vector<ContactCorner> corners)
-    : colliders_(std::move(colliders)), corners_(std::move(corners)) {
+    : corners_(std::move(corners)) {
+    if (corners_.empty())
+        return;
+    for (const Collider& collider : colliders)
+        colliders_.emplace_back(collider, finest_edge(corners_));
+    for (const ContactCorner& corner : corners_)
+        stiffness_.push_back(corner.stiffness);
     grips_.resize(colliders_.size() * corners_.size());
+    touched_.resize(grips_.size());
+    for (const MovingCollider& collider : colliders_)
+        poses_.push_back(collider.pose(0));
+    start_poses_ = poses_;
+}
+
+double ColliderContact::depth_of(const ContactCorner& corner,
+                                 const MovingCollider& collider,
+                                 const Pose& pose,
+                                 const Vec3& x,
+                                 Vec3& normal) const {
+    const MovingCollider::Distance distance = collider.distance(pose.bring_back(x));
+    normal = pose.R * distance.normal;
+    return std::max(0.0, -(distance.gap + corner.outside));
 }
 
 template <class Visit>
 void ColliderContact::for_touching(const Field& x, const Visit& visit) const {
     for (std::size_t k = 0; k < corners_.size(); ++k) {
-        const ContactCorner& corner = corners_[k];
-        const Vec3 position = unpadded(x[corner.corner]);
+        const Vec3 position = unpadded(x[corners_[k].corner]);
         for (std::size_t j = 0; j < colliders_.size(); ++j) {
-            const std::size_t pair = k * colliders_.size() + j;
-            const Distance distance =
-                std::visit([&](const auto& shape) { return distance_to(shape, position); },
-                           colliders_[j].shape);
-            const double depth = std::max(0.0, -(distance.gap + corner.outside));
-            const Grip& grip = grips_[pair];
+            Vec3 normal;
+            const double depth =
+                depth_of(corners_[k], colliders_[j], poses_[j], position, normal);
+            const Grip& grip = grips_[k * colliders_.size() + j];
             if (depth > 0 || grip.force > 0)
-                visit(Touch{corner.corner, corner.stiffness, distance.normal, depth, grip},
-                      pair);
+                visit(Touch{corners_[k].corner, stiffness_[k], normal, depth, grip});
         }
     }
 }
 
-void ColliderContact::begin_step(const Field& x_n, double dt) {
+void ColliderContact::begin_step(const Field& x_n,
+                                 const std::vector<double>& top_speed,
+                                 double time,
+                                 double dt) {
     if (empty())
         return;
-    x_n_ = x_n;
-    std::vector<Grip> grips(grips_.size());
+    for (std::size_t k = 0; k < corners_.size(); ++k) {
+        const ContactCorner& corner = corners_[k];
+        const double stop = impact_depth * corner.edge;
+        const double v = top_speed[corner.body];
+        stiffness_[k] = std::max(corner.stiffness, corner.mass * v * v / (stop * stop));
+    }
     const double slip_length = slip_speed * dt;
-    if (slip_length > 0)
-        for_touching(x_n, [&](const Touch& touch, std::size_t pair) {
-            const Friction& friction = colliders_[pair % colliders_.size()].friction;
-            const double force = friction.coefficient * touch.stiffness * touch.depth;
-            if (touch.depth > 0 && friction.stick)
-                grips[pair] = {touch.normal, infinity, infinity, touch.stiffness};
-            else if (force > 0)
-                grips[pair] = {touch.normal, force, slip_length, force / slip_length};
-        });
-    grips_ = std::move(grips);
+    for (std::size_t j = 0; j < colliders_.size(); ++j) {
+        const MovingCollider& collider = colliders_[j];
+        const Pose& start = start_poses_[j] = collider.pose(time);
+        const Pose& end = poses_[j] = collider.pose(time + dt);
+        for (std::size_t k = 0; k < corners_.size(); ++k) {
+            Grip& grip = grips_[k * colliders_.size() + j];
+            grip = {};
+            const Vec3 x = unpadded(x_n[corners_[k].corner]);
+            Vec3 normal;
+            const double depth = depth_of(corners_[k], collider, start, x, normal);
+            touched_[k * colliders_.size() + j] = depth > 0;
+            const Friction& friction = collider.friction();
+            const double force = friction.coefficient * stiffness_[k] * depth;
+            if (!(depth > 0) || !(slip_length > 0) || !(friction.stick || force > 0))
+                continue;
+            grip.normal = end.R * (start.R.transpose() * normal);
+            grip.origin = end.carry(start.bring_back(x));
+            grip.force = friction.stick ? infinity : force;
+            grip.slip_length = friction.stick ? infinity : slip_length;
+            grip.stiffness = friction.stick ? stiffness_[k] : force / slip_length;
+        }
+    }
+}
+
+bool ColliderContact::has_changed_touch(const Field& x) const {
+    for (std::size_t k = 0; k < corners_.size(); ++k)
+        for (std::size_t j = 0; j < colliders_.size(); ++j) {
+            Vec3 normal;
+            const double depth = depth_of(
+                corners_[k], colliders_[j], poses_[j], unpadded(x[corners_[k].corner]), normal);
+            if ((depth > 0) != (touched_[k * colliders_.size() + j] != 0))
+                return true;
+        }
+    return false;
+}
+
+double ColliderContact::largest_step(const Field& x,
+                                     const Field& v,
+                                     double time,
+                                     double dt) const {
+    double limit = infinity;
+    for (const MovingCollider& collider : colliders_) {
+        if (std::isinf(collider.thickness()))
+            continue;
+        const Pose start = collider.pose(time), end = collider.pose(time + dt);
+        for (const ContactCorner& corner : corners_) {
+            const Vec3 position = unpadded(x[corner.corner]);
+            const Vec3 X = start.bring_back(position);
+            const Vec3 relative = unpadded(v[corner.corner]) - (end.carry(X) - position) / dt;
+            const double speed = relative.norm();
+            const double gap = collider.distance(X).gap + corner.outside;
+            if (gap > speed * dt)
+                continue;
+            limit = std::min(limit,
+                             std::max(gap, share_of_thickness * collider.thickness()) / speed);
+        }
+    }
+    return limit;
 }
 
 Vec3 ColliderContact::gradient_of(const Touch& touch, const Field& x, double& energy) const {
@@ -103,8 +148,7 @@ Vec3 ColliderContact::gradient_of(const Touch& touch, const Field& x, double& en
     energy += touch.stiffness / 2 * touch.depth * touch.depth;
     Vec3 g = -touch.stiffness * touch.depth * touch.normal;
     if (grip.force > 0) {
-        const Vec3 slip =
-            tangential(unpadded(x[touch.corner] - x_n_[touch.corner]), grip.normal);
+        const Vec3 slip = tangential(unpadded(x[touch.corner]) - grip.origin, grip.normal);
         const double y = slip.norm();
         const bool holds = y < grip.slip_length;
         energy += holds ? grip.stiffness / 2 * y * y : grip.force * (y - grip.slip_length / 2);
@@ -120,7 +164,7 @@ Mat3 ColliderContact::hessian_of(const Touch& touch, const Field& x) const {
         H += touch.stiffness * touch.normal * touch.normal.transpose();
     if (grip.force > 0) {
         const Mat3 P = Mat3::Identity() - grip.normal * grip.normal.transpose();
-        const Vec3 slip = P * unpadded(x[touch.corner] - x_n_[touch.corner]);
+        const Vec3 slip = P * (unpadded(x[touch.corner]) - grip.origin);
         const double y = slip.norm();
         if (y < grip.slip_length)
             H += grip.stiffness * P;
@@ -133,30 +177,40 @@ Mat3 ColliderContact::hessian_of(const Touch& touch, const Field& x) const {
 double ColliderContact::add_gradient(const Field& x, Field& gradient) const {
     double energy = 0;
     if (!empty())
-        for_touching(x, [&](const Touch& touch, std::size_t) {
+        for_touching(x, [&](const Touch& touch) {
             gradient[touch.corner] += padded(gradient_of(touch, x, energy));
         });
     return energy;
 }
 
-void ColliderContact::add_impulses(const Field& x,
-                                   const Field& m,
-                                   double dt,
-                                   Field& impulse) const {
-    if (empty())
-        return;
-    for_touching(x, [&](const Touch& touch, std::size_t) {
-        double energy = 0;
-        const Vec3 g = gradient_of(touch, x, energy);
-        const Mat3 A = Mat3::Identity() + dt * dt / m[touch.corner][0] * hessian_of(touch, x);
-        impulse[touch.corner] -= padded(dt * A.ldlt().solve(g));
-    });
+void ColliderContact::restrain(const Field& x, double dt, Field& v) const {
+    for (const ContactCorner& corner : corners_)
+        for (std::size_t j = 0; j < colliders_.size(); ++j) {
+            Vec3p& velocity = v[corner.corner];
+            Vec3 normal;
+            const double depth = depth_of(corner,
+                                          colliders_[j],
+                                          poses_[j],
+                                          unpadded(x[corner.corner] + dt * velocity),
+                                          normal);
+            if (!(depth > 0))
+                continue;
+            const double stopped = depth / dt;
+            const Pose& start = start_poses_[j];
+            const Vec3 at = unpadded(x[corner.corner]);
+            const Vec3 surface = (poses_[j].carry(start.bring_back(at)) - at) / dt;
+            const Vec3 slip = tangential(unpadded(velocity) - surface, normal);
+            const Friction& friction = colliders_[j].friction();
+            const double most = friction.stick ? infinity : friction.coefficient * stopped;
+            const double share = std::min(1.0, most / std::max(slip.norm(), 1e-300));
+            velocity += padded(stopped * normal - share * slip);
+        }
 }
 
 void ColliderContact::linearize(const Field& x) {
     blocks_.clear();
     if (!empty())
-        for_touching(x, [&](const Touch& touch, std::size_t) {
+        for_touching(x, [&](const Touch& touch) {
             blocks_.push_back({touch.corner, hessian_of(touch, x)});
         });
 }
@@ -169,6 +223,20 @@ void ColliderContact::add_product(const Field& u, Field& product) const {
 void ColliderContact::add_diagonal(Field& diagonal) const {
     for (const Block& block : blocks_)
         diagonal[block.corner] += padded(block.hessian.diagonal());
+}
+
+double ColliderContact::deepest_penetration(const Field& x, double time) const {
+    double deepest = 0;
+    for (const MovingCollider& collider : colliders_) {
+        const Pose pose = collider.pose(time);
+        for (const ContactCorner& corner : corners_) {
+            Vec3 normal;
+            const double depth =
+                depth_of(corner, collider, pose, unpadded(x[corner.corner]), normal);
+            deepest = std::max(deepest, depth / corner.edge);
+        }
+    }
+    return deepest;
 }
 
 }  // namespace sim

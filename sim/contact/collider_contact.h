@@ -1,8 +1,8 @@
-// Corners against still colliders, as an energy inside the solve.
+// Corners against colliders, as an energy inside the solve.
 #pragma once
 
 #include "sim/base/field.h"
-#include "sim/scene.h"
+#include "sim/contact/moving_collider.h"
 
 #include <vector>
 
@@ -10,38 +10,56 @@ namespace sim {
 
 /// A corner that may touch: those on the surface of a body.
 struct ContactCorner {
-    int corner = 0;      // in the field of all corners
+    int corner = 0;  // in the field of all corners
+    int body = 0;
     double outside = 0;  // distance that it sticks out of the body's surface at rest, >= 0 [m]
     double stiffness = 0;  // k of the penalty [N/m]
+    double mass = 0;       // [kg]
+    double edge = 0;       // of its body's domains, s [m]
 };
 
 /// Σ over corners and colliders of
 ///
 ///   k/2 d² + mu N D(|u_t|),   d = max(0, -(gap + outside)),   D(y) = y²/(2 e) for y < e, else y - e/2
 ///
-/// d [m] is the penetration of the body's surface, u_t the displacement in the step along the tangent plane of its
-/// start, N = k d the normal force there (both lagged, which makes friction a convex potential), e = slip_speed dt the
-/// displacement below which friction holds elastically instead of sliding. Friction "stick" holds what touched at the
-/// start of the step like a spring, k/2 |u_t|², which no force makes slide. k = contact_stiffness E s leaves a depth
-/// p s / (k / s) under a pressure p, i.e. less than a thousandth of a domain for bodies that carry their own weight.
+/// d [m] is the penetration of the body's surface where the collider is at the end of the step, u_t the displacement in
+/// the step relative to the collider and along its tangent plane, N = k d the normal force at the start of the step
+/// (plane and N are lagged, which makes friction a convex potential), e = slip_speed dt the displacement below which
+/// friction holds elastically instead of sliding. Friction "stick" holds what touched at the start of the step like a
+/// spring, k/2 |u_t|², which no force makes slide. k = contact_stiffness E s leaves a depth p s / (k / s) under a pressure p,
+/// i.e. less than a thousandth of a domain for bodies that carry their own weight; corners of a body whose top speed
+/// lately was v meet m v² / d_impact² where that is more: d_impact = s/100 stops one that comes so fast.
 class ColliderContact {
   public:
-    ColliderContact(std::vector<Collider> colliders, std::vector<ContactCorner> corners);
+    ColliderContact(const std::vector<Collider>& colliders, std::vector<ContactCorner> corners);
 
     bool empty() const { return colliders_.empty() || corners_.empty(); }
 
-    /// Fixes the state at the start of a step: x_n (#C), the normal forces of friction, and dt [s].
-    void begin_step(const Field& x_n, double dt);
+    /// Fixes what the step from `time` to time + dt starts with: x_n (#C), the bodies' top speeds (#bodies) [m/s], and
+    /// the normal forces of friction.
+    void begin_step(const Field& x_n,
+                    const std::vector<double>& top_speed,
+                    double time,
+                    double dt);
+
+    /// The longest step at x, v (#C) that lets no corner pass through a thin collider: up to where it touches, or, near
+    /// that, a part of the thickness; infinite where none comes near within `dt`.   [s]
+    double largest_step(const Field& x, const Field& v, double time, double dt) const;
+
+    /// Whether a corner has begun or ceased to touch since the start of the step that has led to x.
+    bool has_changed_touch(const Field& x) const;
 
     /// Adds ∂/∂x to `gradient` (#C) [N] and returns the energy [J]. Friction is left out where dt is 0 (statics).
     double add_gradient(const Field& x, Field& gradient) const;
 
-    /// Keeps the 3×3 Hessians of the corners that touch at x.
+    /// Keeps the 3×3 Hessians of the corners that touch at x; curvature of the collider is left out, so that they are
+    /// positive semi-definite.
     void linearize(const Field& x);
 
-    /// Adds to `impulse` (#C) what touching gives corners of masses m (#C) [kg] in an explicit step that has led to x:
-    /// -dt (1 + dt²/m H)⁻¹ g, each corner for itself, which never makes it bounce however stiff it is.   [N s]
-    void add_impulses(const Field& x, const Field& m, double dt, Field& impulse) const;
+    /// What colliders take from velocities v (#C) that would move corners from x in an explicit step of dt: the part that
+    /// would end inside, and friction of up to mu times as much, each corner for itself. Inelastic, so that no energy
+    /// comes of it (Moreau's stepping).
+    void restrain(const Field& x, double dt, Field& v) const;
 
     /// product += H u.
     void add_product(const Field& u, Field& product) const;
@@ -49,11 +67,18 @@ class ColliderContact {
     /// diagonal += diag H.
     void add_diagonal(Field& diagonal) const;
 
+    /// The deepest penetration at x and `time`, as a share of the domain's edge.
+    double deepest_penetration(const Field& x, double time) const;
+
   private:
     /// Friction of a corner on a collider, fixed at the start of a step.
     struct Grip {
-        Vec3 normal{0, 0, 1};
-        double force = 0;  // that slipping meets, infinite: sticks, 0: nothing touched [N]
+        Vec3 normal{
+            0,
+            0,
+            1};  // of the tangent plane, as the collider carries it to the end of the step
+        Vec3 origin{0, 0, 0};  // x_n, as the collider carries it
+        double force = 0;      // that slipping meets, infinite: sticks, 0: nothing touched [N]
         double slip_length = 0;  // e [m]
         double stiffness = 0;    // below e [N/m]
     };
@@ -68,13 +93,21 @@ class ColliderContact {
 
     Vec3 gradient_of(const Touch& touch, const Field& x, double& energy) const;
     Mat3 hessian_of(const Touch& touch, const Field& x) const;
+    double depth_of(const ContactCorner& corner,
+                    const MovingCollider& collider,
+                    const Pose& pose,
+                    const Vec3& x,
+                    Vec3& normal) const;
     template <class Visit>
     void for_touching(const Field& x, const Visit& visit) const;
 
-    std::vector<Collider> colliders_;
+    std::vector<MovingCollider> colliders_;
     std::vector<ContactCorner> corners_;
-    std::vector<Grip> grips_;  // (#corners × #colliders)
-    Field x_n_;
+    std::vector<double> stiffness_;  // (#corners) k of this step
+    std::vector<char> touched_;      // (#corners × #colliders) at the start of the step
+    std::vector<Grip> grips_;        // (#corners × #colliders)
+    std::vector<Pose> start_poses_,
+        poses_;  // (#colliders) at the start and the end of the step
 
     struct Block {
         int corner = 0;

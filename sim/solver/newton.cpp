@@ -11,8 +11,7 @@ namespace {
 
 constexpr int chunk = 8192;
 constexpr double armijo = 1e-4;  // share of the predicted decrease that a step must bring
-constexpr double value_noise =
-    1e-13;  // relative rounding of W: no decrease below it can be seen
+constexpr double value_rounding = 1e-13;  // of W, relative
 constexpr int max_halvings = 30;
 
 double slope(const Field& gradient, const Field& step) {
@@ -42,6 +41,7 @@ double search_line(
     const int n = static_cast<int>(q.size());
     const double descent = slope(s.gradient, s.step);
     s.trial.resize(n);
+    const double noise = value_rounding * std::abs(value) + potential.value_noise();
     double length = 1;
     for (int k = 0; k < max_halvings; ++k, length /= 2) {
         for_chunks(n, chunk, [&](int begin, int end) {
@@ -49,7 +49,7 @@ double search_line(
                 s.trial[i] = q[i] + length * s.step[i];
         });
         trial_value = potential.value_and_gradient(s.trial, s.trial_gradient);
-        if (trial_value <= value + armijo * length * descent + value_noise * std::abs(value))
+        if (trial_value <= value + armijo * length * descent + noise)
             return length;
     }
     return 0;

@@ -28,6 +28,9 @@ class Potential {
 
     /// Rounding of the gradient in the same norm: no residual can be brought below it.
     virtual double gradient_noise() const = 0;
+
+    /// Rounding of the value, beside what its own size brings: no decrease can be seen below it.
+    virtual double value_noise() const = 0;
 };
 
 /// sqrt(Σ g_i² d_i), summed in fixed chunks.

@@ -3,7 +3,6 @@
 #include "tests/support/random_fields.h"
 
 #include <Eigen/Geometry>
-
 #include <catch2/catch.hpp>
 
 using sim::Collider;
@@ -12,15 +11,16 @@ using sim::Field;
 
 namespace {
 
-constexpr double stiffness = 3e4, dt = 0.01, slip_length = 1e-3 * dt;
+constexpr double stiffness = 3e4, mass = 0.01, edge = 0.1, dt = 0.01, slip_length = 1e-3 * dt;
 const Vec3 slope_normal = Vec3(1, -2, 4).normalized();
 
 const sim::PlaneShape plane{{0.1, 0.2, 0.3}, 7 * slope_normal};
+const std::vector<double> at_rest{0};  // top speeds
 const assets::Sphere sphere{{1, 2, 3}, 0.5};
 const assets::Box box{{-1, -2, -3}, {1, 2, 3}};
 
 ColliderContact contact_of(const Collider& collider, double outside = 0) {
-    return {{collider}, {{0, outside, stiffness}}};
+    return {{collider}, {{0, 0, outside, stiffness, mass, edge}}};
 }
 
 struct Response {
@@ -80,11 +80,11 @@ TEST_CASE(
 
 TEST_CASE("nothing touches where there are no colliders or no corners") {
     const Field x = {sim::padded(plane.point - slope_normal)};
-    for (ColliderContact contact :
-         {ColliderContact({}, {{0, 0, stiffness}}), ColliderContact({{plane, {}}}, {})}) {
+    for (ColliderContact contact : {ColliderContact({}, {{0, 0, 0, stiffness, mass, edge}}),
+                                    ColliderContact({Collider{plane, {}, {}}}, {})}) {
         CHECK(contact.empty());
         Field field(1);
-        contact.begin_step(x, dt);
+        contact.begin_step(x, at_rest, 0, dt);
         CHECK(contact.add_gradient(x, field) == 0);
         contact.linearize(x);
         contact.add_product(x, field);
@@ -98,7 +98,7 @@ TEST_CASE("friction is mu N against the slip, with the normal force of the step'
     const Vec3 x_n = plane.point - depth * slope_normal,
                t = slope_normal.cross(Vec3::UnitY()).normalized();
     ColliderContact contact = contact_of({plane, {false, mu}});
-    contact.begin_step({sim::padded(x_n)}, dt);
+    contact.begin_step({sim::padded(x_n)}, at_rest, 0, dt);
     const auto force_at = [&](double slip, double normal_motion) {
         const Response r = response(contact, x_n + slip * t + normal_motion * slope_normal);
         const double now = stiffness * std::max(0.0, depth - normal_motion);
@@ -110,9 +110,11 @@ TEST_CASE("friction is mu N against the slip, with the normal force of the step'
     CHECK((force_at(5 * slip_length, 2 * depth) + mu * N * t).norm() <= 1e-9 * N);
     CHECK((force_at(0.25 * slip_length, 0) + 0.25 * mu * N * t).norm() <= 1e-9 * N);
 
-    contact.begin_step({sim::padded(x_n)}, 0);  // statics
+    contact.begin_step({sim::padded(x_n)}, at_rest, 0, 0);  // statics
     CHECK(force_at(5 * slip_length, 0).norm() <= 1e-9 * N);
     contact.begin_step({sim::padded(x_n + 2 * depth * slope_normal)},
+                       at_rest,
+                       0,
                        dt);  // no touch at the start
     CHECK(force_at(5 * slip_length, 0).norm() <= 1e-9 * N);
 }
@@ -122,13 +124,15 @@ TEST_CASE("what sticks is held by a spring that nothing makes slide") {
     const Vec3 x_n = plane.point - depth * slope_normal,
                t = slope_normal.cross(Vec3::UnitY()).normalized();
     ColliderContact contact = contact_of({plane, {true, 0}});
-    contact.begin_step({sim::padded(x_n)}, dt);
+    contact.begin_step({sim::padded(x_n)}, at_rest, 0, dt);
     for (const double slip : {0.25 * slip_length, 100 * slip_length, depth})
         CHECK((response(contact, x_n + slip * t).force
                - stiffness * (depth * slope_normal - slip * t))
                   .norm()
               <= 1e-9 * stiffness * depth);
     contact.begin_step({sim::padded(x_n + 2 * depth * slope_normal)},
+                       at_rest,
+                       0,
                        dt);  // no touch at the start
     CHECK((response(contact, x_n + depth * t).force - stiffness * depth * slope_normal).norm()
           <= 1e-9 * stiffness * depth);
@@ -141,7 +145,7 @@ TEST_CASE("the force is minus the energy's gradient, by observed order") {
         for (const double slip : {0.4 * slip_length, 40 * slip_length})
             for (int repeat = 0; repeat < 5; ++repeat) {
                 ColliderContact contact = contact_of(start.collider);
-                contact.begin_step({sim::padded(start.x_n)}, dt);
+                contact.begin_step({sim::padded(start.x_n)}, at_rest, 0, dt);
                 const Vec3 x = start.x_n + slip * tests::random_vector(random).normalized();
                 const Vec3 direction = tests::random_vector(random).normalized();
                 const double exact = -response(contact, x).force.dot(direction);
@@ -167,7 +171,7 @@ TEST_CASE("the Hessian is the gradient's derivative on a plane, and positive eve
     for (const double slip : {0.4 * slip_length, 40 * slip_length})
         for (int repeat = 0; repeat < 5; ++repeat) {
             ColliderContact contact = contact_of(start.collider);
-            contact.begin_step({sim::padded(start.x_n)}, dt);
+            contact.begin_step({sim::padded(start.x_n)}, at_rest, 0, dt);
             const Vec3 x = start.x_n + slip * tests::random_vector(random).normalized();
             const Vec3 direction = tests::random_vector(random).normalized();
             contact.linearize({sim::padded(x)});
@@ -189,7 +193,7 @@ TEST_CASE("the Hessian is the gradient's derivative on a plane, and positive eve
     for (const Start& any : starts(friction))
         for (int repeat = 0; repeat < 20; ++repeat) {
             ColliderContact contact = contact_of(any.collider);
-            contact.begin_step({sim::padded(any.x_n)}, dt);
+            contact.begin_step({sim::padded(any.x_n)}, at_rest, 0, dt);
             contact.linearize(
                 {sim::padded(any.x_n + tests::random_vector(random, 3 * slip_length))});
             Field diagonal(1);

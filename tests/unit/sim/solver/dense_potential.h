@@ -71,6 +71,8 @@ class DensePotential : public sim::Potential {
 
     double gradient_noise() const override { return noise; }
 
+    double value_noise() const override { return 0; }
+
     std::vector<int> held;         // components
     double least_projected = 0.1;  // eigenvalue that the projection leaves, as inertia does
     double scale = 1, noise = 0;

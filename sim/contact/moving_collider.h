@@ -1,0 +1,58 @@
+// A collider's shape and its motion.
+#pragma once
+
+#include "assets/generators/distance_field.h"
+#include "sim/scene.h"
+
+#include <memory>
+
+namespace sim {
+
+/// x = centre + R (X - centre) + translate: where a point X of the shape, as the shot file places it, is at a time.
+struct Pose {
+    Mat3 R = Mat3::Identity();
+    Vec3 centre{0, 0, 0}, translate{0, 0, 0};
+
+    Vec3 carry(const Vec3& X) const { return centre + R * (X - centre) + translate; }
+
+    Vec3 bring_back(const Vec3& x) const {
+        return centre + R.transpose() * (x - centre - translate);
+    }
+};
+
+class MovingCollider {
+  public:
+    /// `resolution`: the scale at which a mesh matters, the smallest domain's edge [m]. Throws Error(Input) where a
+    /// mesh is not closed.
+    MovingCollider(const Collider& collider, double resolution);
+
+    /// Between keys translation is linear and rotation turns evenly about the shape's centre; before the first key and
+    /// after the last it stands still.
+    Pose pose(double time) const;
+
+    struct Distance {
+        double gap = 0;        // signed, negative inside [m]
+        Vec3 normal{0, 0, 1};  // outward of the shape
+    };
+
+    /// From a point X in the shape's own frame.
+    Distance distance(const Vec3& X) const;
+
+    /// The smallest extent along the axes, what a fast corner might pass through; infinite for a plane.   [m]
+    double thickness() const { return thickness_; }
+
+    const Friction& friction() const { return friction_; }
+
+  private:
+    std::variant<PlaneShape, assets::Shape, std::shared_ptr<const assets::DistanceField>>
+        shape_;
+    std::vector<ColliderKey> keys_;
+    Friction friction_;
+    Vec3 centre_{0, 0, 0};
+    double thickness_ = 0;
+};
+
+/// The source of a collider that is no plane.
+assets::Source collider_source(const Collider& collider);
+
+}  // namespace sim

@@ -1,0 +1,69 @@
+#include "sim/contact/moving_collider.h"
+#include "tests/support/random_fields.h"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+
+using sim::Collider;
+using sim::ColliderKey;
+using sim::MovingCollider;
+
+namespace {
+
+constexpr double quarter_turn = 3.14159265358979323846 / 2;
+
+const assets::Shape shapes[] = {assets::Sphere{{1, 2, 3}, 0.5},
+                                assets::Box{{-1, -2, -3}, {1, 2, 3}},
+                                assets::Cylinder{{0, 0, 0}, {1, 2, 2}, 0.7},
+                                assets::Capsule{{0, 0, 0}, {1, 2, 2}, 0.7},
+                                assets::Torus{{0.5, 0, 0}, {1, 1, 0}, 2, 0.5}};
+
+}  // namespace
+
+TEST_CASE("distances are those of the shapes, and normals their gradients") {
+    tests::Random random(1);
+    for (const assets::Shape& shape : shapes) {
+        const MovingCollider collider({shape, {}}, 0.1);
+        int checked = 0;
+        for (int repeat = 0; repeat < 400; ++repeat) {
+            const Vec3 x = tests::random_vector(random, 4);
+            const MovingCollider::Distance distance = collider.distance(x);
+            CHECK(distance.gap == Approx(assets::signed_distance(shape, x)).margin(1e-12));
+            // Where three places around agree on the direction, no edge of the shape lies between.
+            constexpr double h = 1e-5;
+            const auto slope = [&](double step) {
+                Vec3 gradient;
+                for (int k = 0; k < 3; ++k)
+                    gradient[k] = (assets::signed_distance(shape, x + step * Vec3::Unit(k))
+                                   - assets::signed_distance(shape, x - step * Vec3::Unit(k)))
+                                  / (2 * step);
+                return gradient;
+            };
+            if ((slope(h) - slope(2 * h)).norm() > 1e-6)
+                continue;
+            CHECK((distance.normal - slope(h)).norm() < 1e-5);
+            ++checked;
+        }
+        CHECK(checked > 300);
+    }
+}
+
+TEST_CASE(
+    "a shape moves evenly between keys, turns about its centre, and stands still outside") {
+    Collider collider{assets::Shape{assets::Box{{0, 0, 0}, {2, 2, 4}}}, {}};
+    collider.keys = {{1, {0, 0, 0}, {0, 0, 0}}, {3, {0, 4, 0}, {0, 0, quarter_turn}}};
+    const MovingCollider moving(collider, 0.1);
+    const Vec3 corner(2, 1, 0);  // one to the right of the centre (1, 1, 2)
+    CHECK((moving.pose(0).carry(corner) - corner).norm() < 1e-15);
+    CHECK((moving.pose(1).carry(corner) - corner).norm() < 1e-15);
+    const double s = std::sqrt(0.5);
+    CHECK((moving.pose(2).carry(corner) - Vec3(1 + s, 1 + s + 2, 0)).norm() < 1e-12);
+    CHECK((moving.pose(3).carry(corner) - Vec3(1, 2 + 4, 0)).norm() < 1e-12);
+    CHECK((moving.pose(9).carry(corner) - Vec3(1, 2 + 4, 0)).norm() < 1e-12);
+    CHECK((moving.pose(2).bring_back(moving.pose(2).carry(corner)) - corner).norm() < 1e-14);
+}
+
+TEST_CASE("the thickness is the smallest extent") {
+    CHECK(MovingCollider({shapes[1], {}}, 0.1).thickness() == Approx(2));
+    CHECK(std::isinf(MovingCollider({sim::PlaneShape{}, {}}, 0.1).thickness()));
+}

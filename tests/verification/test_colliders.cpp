@@ -1,0 +1,153 @@
+// Bodies against colliders that are thin, fast, moving, or meshes.
+#include "sim/simulation.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
+namespace {
+
+constexpr double frame_time = 1.0 / 24;
+
+sim::Body cube(const Vec3& centre, double edge, int n_domains, double young_modulus) {
+    sim::Body body;
+    body.name = "cube";
+    body.domain_size = edge / n_domains;
+    const Vec3 half = Vec3::Constant(edge / 2);
+    body.source.geometry = assets::Shape{assets::Box{centre - half, centre + half}};
+    body.skins.push_back({"outside", {}});
+    sim::Region region;
+    region.name = "all";
+    region.select.is = sim::Selector::All{};
+    region.model = sim::Model::StableNeoHookean;
+    region.young_modulus = young_modulus;
+    region.poisson_ratio = 0.3;
+    region.density = 1000;
+    body.regions.push_back(region);
+    return body;
+}
+
+sim::Scene scene_of(sim::Body body, double dt) {
+    sim::Scene scene;
+    scene.solver.method = sim::Method::Fem;
+    scene.solver.dt = dt;
+    scene.probes.push_back({"all", "cube", std::string("all")});
+    scene.bodies.push_back(std::move(body));
+    return scene;
+}
+
+double energy(const sim::Stats& stats) {
+    return stats.kinetic_energy + stats.elastic_energy + stats.gravitational_energy;
+}
+
+/// A sphere as a mesh file in a temporary folder: an octahedron, its edges halved `levels` times.
+std::filesystem::path sphere_file(const Vec3& centre, double radius, int n) {
+    const auto path = std::filesystem::temp_directory_path()
+                      / ("supple_sphere_" + std::to_string(::getpid()) + ".obj");
+    std::ofstream file(path);
+    const double pi = 3.14159265358979323846;
+    file << "v " << (centre + radius * Vec3(0, 0, 1)).transpose() << "\n";
+    for (int i = 1; i < n; ++i)
+        for (int j = 0; j < 2 * n; ++j) {
+            const double theta = pi * i / n, phi = pi * j / n;
+            const Vec3 unit(std::sin(theta) * std::cos(phi),
+                            std::sin(theta) * std::sin(phi),
+                            std::cos(theta));
+            file << "v " << (centre + radius * unit).transpose() << "\n";
+        }
+    file << "v " << (centre - radius * Vec3(0, 0, 1)).transpose() << "\n";
+    const auto at = [&](int i, int j) { return 2 + 2 * n * (i - 1) + j % (2 * n); };
+    const int south = 2 + 2 * n * (n - 1);
+    for (int j = 0; j < 2 * n; ++j) {
+        file << "f 1 " << at(1, j) << " " << at(1, j + 1) << "\n";
+        for (int i = 1; i + 1 < n; ++i)
+            file << "f " << at(i, j) << " " << at(i + 1, j) << " " << at(i + 1, j + 1) << "\n"
+                 << "f " << at(i, j) << " " << at(i + 1, j + 1) << " " << at(i, j + 1) << "\n";
+        file << "f " << south << " " << at(n - 1, j + 1) << " " << at(n - 1, j) << "\n";
+    }
+    return path;
+}
+
+}  // namespace
+
+TEST_CASE("a cube at 20 m/s does not pass through a thin wall, and gains no energy") {
+    const double dt = GENERATE(1e-3, 1.0 / 240);
+    sim::Body body = cube({0, 0, 0.2}, 0.3, 6, 1e5);
+    body.velocity = {0, 0, -20};
+    sim::Scene scene = scene_of(std::move(body), dt);
+    scene.solver.steps = GENERATE(sim::Steps::Implicit, sim::Steps::Bdf2, sim::Steps::Explicit);
+    const double thickness = 0.005;  // a tenth of a domain
+    scene.colliders.push_back(
+        {assets::Shape{assets::Box{{-1, -1, -thickness}, {1, 1, 0}}}, {false, 0.3}});
+    sim::Simulation simulation(scene, frame_time);
+    double highest = energy(simulation.stats());
+    for (int k = 1; k <= 40; ++k) {
+        simulation.advance_to(1e-3 * k);
+        for (const auto& surface : simulation.deformed_surfaces())
+            for (const Vec3f& x : surface.positions)
+                REQUIRE(x.z() > -thickness / 2);
+        CHECK(energy(simulation.stats()) < highest * (1 + 1e-3));
+        highest = std::min(highest, energy(simulation.stats()));
+    }
+    CHECK(simulation.stats().linear_momentum.z() > 0);  // it bounces
+}
+
+TEST_CASE("a moving wall carries a cube along by friction") {
+    sim::Scene scene = scene_of(cube({0, 0, 0.1}, 0.2, 2, 1e6), 1e-3);
+    scene.forces.push_back(sim::Gravity{{0, 0, -10}});
+    sim::Collider belt{assets::Shape{assets::Box{{-2, -2, -1}, {2, 2, 0}}}, {false, 0.5}};
+    belt.keys = {{0, {0, 0, 0}, {0, 0, 0}}, {1, {0.5, 0, 0}, {0, 0, 0}}};
+    scene.colliders.push_back(belt);
+    sim::Simulation simulation(scene, frame_time);
+    simulation.advance_to(0.8);
+    // It slips until t = v / (mu g) = 0.1 s, half as far as the belt then goes: 0.4 - 0.025 m.
+    CHECK(simulation.probes()[0].position.x() == Approx(0.375).margin(0.01));
+    const sim::Stats stats = simulation.stats();
+    CHECK(stats.linear_momentum.x() / stats.total_mass == Approx(0.5).epsilon(0.02));
+}
+
+TEST_CASE("a mesh collider stops a cube where the sphere that it approximates does") {
+    const assets::Sphere sphere{{0, 0, -0.5}, 0.5};
+    double height[2];
+    const std::filesystem::path path = sphere_file(sphere.center, sphere.radius, 48);
+    for (const bool is_mesh : {false, true}) {
+        sim::Scene scene = scene_of(cube({0, 0, 0.12}, 0.2, 4, 1e5), 2e-3);
+        scene.solver.damping = 5;
+        scene.forces.push_back(sim::Gravity{{0, 0, -10}});
+        if (is_mesh)
+            scene.colliders.push_back({assets::MeshFile{path}, {true, 0}});
+        else
+            scene.colliders.push_back({assets::Shape{sphere}, {true, 0}});
+        sim::Simulation simulation(scene, frame_time);
+        simulation.advance_to(1);
+        height[is_mesh] = simulation.probes()[0].position.z();
+    }
+    std::filesystem::remove(path);
+    CHECK(height[0] > 0.07);
+    CHECK(height[1] == Approx(height[0]).margin(0.02 * 0.05));  // of a domain
+}
+
+TEST_CASE("a cylinder presses a block and lets it recover") {
+    sim::Scene scene = scene_of(cube({0, 0, 0.1}, 0.2, 6, 1e5), 2e-3);
+    sim::Pin floor;
+    floor.name = "floor";
+    floor.body = "cube";
+    floor.select.is = sim::Selector::HalfSpace{{0, 0, 0}, {0, 0, 1}};
+    scene.pins.push_back(floor);
+    scene.solver.damping = 5;
+    sim::Collider roller{assets::Shape{assets::Cylinder{{-1, 0, 0.25}, {1, 0, 0.25}, 0.05}},
+                         {}};
+    roller.keys = {
+        {0, {0, 0, 0}, {0, 0, 0}}, {0.5, {0, 0, -0.05}, {0, 0, 0}}, {1, {0, 0, 0}, {0, 0, 0}}};
+    scene.colliders.push_back(roller);
+    scene.probes.push_back({"top", "cube", Vec3(0, 0, 0.2)});
+    sim::Simulation simulation(scene, frame_time);
+    simulation.advance_to(0.5);
+    CHECK(simulation.probes()[1].position.z() == Approx(0.15).margin(0.02 * 0.2 / 6));
+    CHECK(simulation.pins()[0].force.z() > 10);
+    simulation.advance_to(2);
+    CHECK(simulation.probes()[1].position.z() == Approx(0.2).margin(1e-3));
+}
