@@ -9,6 +9,7 @@ namespace sim {
 namespace {
 
 constexpr double static_tolerance = 1e-8;
+constexpr int contact_passes = 20;
 constexpr int most_halvings = 8;  // of the way to an equilibrium
 
 }  // namespace
@@ -61,10 +62,11 @@ bool Stepper::try_equilibrium(State& state,
     options.tolerance = static_tolerance;
     options.first_forcing = 0.1;
     options.max_iterations = 200;
-    summary = minimize(potential_, options, q_, scratch_);
-    newton_iterations += summary.iterations;
-    cg_iterations += summary.linear_iterations;
-    if (summary.termination != Termination::Converged)
+    if (!surfaces_.empty())
+        surfaces_.begin_step(state.x, state.x, state.top_speed, 0);
+    const bool solved = minimize_with_contact(options, contact_passes);
+    summary = summary_;
+    if (!solved)
         return false;
 
     state.x = potential_.positions();

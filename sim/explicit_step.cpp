@@ -68,7 +68,7 @@ bool Stepper::try_explicit(State& state, double dt) {
         summary_.termination = Termination::Unstable;  // a corner might pass through a collider
         return false;
     }
-    restrain_by_colliders(state, dt);
+    restrain_by_contact(state, dt);
     drift(dt);
 
     // The forces there. The motion must not be faster than the step can follow.
@@ -98,10 +98,16 @@ bool Stepper::try_explicit(State& state, double dt) {
     return true;
 }
 
-void Stepper::restrain_by_colliders(const State& state, double dt) {
-    if (colliders_.empty())
+void Stepper::restrain_by_contact(const State& state, double dt) {
+    if (colliders_.empty() && surfaces_.empty())
         return;
     Field change = moved_;
+    if (!surfaces_.empty()) {
+        for (std::size_t c = 0; c < moved_.size(); ++c)
+            corner_[c] = state.x[c] + dt * moved_[c];
+        surfaces_.begin_step(state.x, corner_, state.top_speed, dt);
+        surfaces_.restrain(state.x, assembly_.mass, dt, change);
+    }
     colliders_.restrain(state.x, dt, change);
     move_through_grid(change);
 }

@@ -9,6 +9,8 @@ namespace {
 
 constexpr double dynamic_tolerance = 1e-3;  // of the inner forces of the step
 constexpr double semi_implicit_forcing = 1e-6;
+constexpr int contact_passes = 6;
+constexpr double depth_tolerance = 2e-3;  // of a linearised depth, in domain edges
 
 }  // namespace
 
@@ -24,7 +26,9 @@ bool Stepper::try_bdf2(State& state, double dt) {
     // jumps, and to continue the jump would create energy. Such a step is one of backward Euler, as is the one after it.
     const bool is_smooth = state.last_dt == 0 || !state.x_before.empty();
     bool solved = solve_step(state, dt, is_smooth ? Scheme::Bdf2 : Scheme::BackwardEuler);
-    const bool has_event = solved && colliders_.has_changed_touch(potential_.positions());
+    const bool has_event = solved
+                           && (colliders_.has_changed_touch(potential_.positions())
+                               || surfaces_.has_changed_touch(potential_.positions()));
     if (has_event && is_smooth)
         solved = solve_step(state, dt, Scheme::BackwardEuler);
     if (!solved)
@@ -54,15 +58,33 @@ bool Stepper::solve_step(const State& state, double dt, Scheme scheme) {
         options.line_search = false;
         options.tolerance = semi_implicit_forcing;
     }
-    summary_ = minimize(potential_, options, q_, scratch_);
-    newton_iterations += summary_.iterations;
-    cg_iterations += summary_.linear_iterations;
-    if (summary_.termination != Termination::Converged)
+    const Field& u = map_.applied(q_, corner_);
+    x_end_.resize(state.x.size());
+    for (std::size_t c = 0; c < state.x.size(); ++c)
+        x_end_[c] = potential_.step().x_n[c] + dt_hat_ * u[c];
+    if (!surfaces_.empty())
+        surfaces_.begin_step(state.x, x_end_, state.top_speed, dt);
+    if (!minimize_with_contact(options,
+                               scene_.solver.steps == Steps::SemiImplicit ? 1 : contact_passes))
         return false;
     moved_.resize(state.x.size());
     map_.apply(q_, moved_);
     balance_momentum();
     return true;
+}
+
+bool Stepper::minimize_with_contact(const NewtonOptions& options, int most_passes) {
+    // Surfaces are linearised where the step is expected to end: again, where it ends elsewhere.
+    for (int pass = 1;; ++pass) {
+        summary_ = minimize(potential_, options, q_, scratch_);
+        newton_iterations += summary_.iterations;
+        cg_iterations += summary_.linear_iterations;
+        if (summary_.termination != Termination::Converged)
+            return false;
+        if (pass == most_passes || surfaces_.empty()
+            || surfaces_.relinearize(potential_.positions()) < depth_tolerance)
+            return true;
+    }
 }
 
 void Stepper::end_implicit(State& state, double dt) {

@@ -36,7 +36,8 @@ double IncrementalPotential::elastic_gradient(const Field& x, Field& gradient) {
 double IncrementalPotential::value_and_gradient(const Field& q, Field& gradient) {
     update_positions(q);
     double value = elastic_gradient(x_, corner_gradient_);
-    value += colliders_.add_gradient(x_, corner_gradient_);
+    for (const ContactEnergy* contact : contacts_)
+        value += contact->add_gradient(x_, corner_gradient_);
     if (!std::isfinite(value))
         return value;
 
@@ -78,8 +79,10 @@ void IncrementalPotential::linearize(const Field& q, bool project) {
     for (const Vec3p& x : x_)
         for (int k = 0; k < 3; ++k)
             largest_coordinate = std::max(largest_coordinate, std::abs(x[k]));
-    colliders_.linearize(x_);
-    colliders_.add_diagonal(corner_diagonal_);
+    for (ContactEnergy* contact : contacts_) {
+        contact->linearize(x_);
+        contact->add_diagonal(corner_diagonal_);
+    }
 
     // The diagonal of M + dt² Tᵀ K T, and what rounding of positions does to dt Tᵀ ∂Φ/∂x.
     inverse_diagonal_.resize(n);
@@ -105,7 +108,8 @@ double IncrementalPotential::hessian_product(const Field& p, Field& product) {
     const Field& u = map_.applied(p, corner_diagonal_);
     for (const ElasticBody& body : bodies_)
         body.elasticity->product(&u[body.begin], &corner_product_[body.begin]);
-    colliders_.add_product(u, corner_product_);
+    for (const ContactEnergy* contact : contacts_)
+        contact->add_product(u, corner_product_);
     const Field& Ku = map_.applied_transposed(corner_product_, product);
     const double dt_squared = step_.dt * step_.dt;
     return sum_chunks(static_cast<int>(p.size()), chunk, [&](int begin, int end) {

@@ -1,7 +1,7 @@
 // The incremental potential of one step: what a step of every method minimises.
 #pragma once
 
-#include "sim/contact/collider_contact.h"
+#include "sim/contact/contact_energy.h"
 #include "sim/elasticity/elasticity.h"
 #include "sim/grid/corner_map.h"
 #include "sim/solver/potential.h"
@@ -14,7 +14,7 @@ namespace sim {
 ///
 ///   W(q) = 1/2 (q - q~)ᵀ M (q - q~) + Φ(x_n + dt T q),      A = M + dt² Tᵀ K T
 ///
-/// with Φ = elastic + hourglass + collider energies, M lumped on q, and q~ the velocity after transfer, external forces
+/// with Φ = elastic + hourglass + contact energies, M lumped on q, and q~ the velocity after transfer, external forces
 /// and damping. Statics is the same with M = 0, dt = 1 (q is then a displacement) and the external forces in Φ:
 /// W(u) = Φ(x_n + T u) - f·(x_n + T u).
 class IncrementalPotential : public Potential {
@@ -29,8 +29,8 @@ class IncrementalPotential : public Potential {
 
     IncrementalPotential(const CornerMap& map,
                          std::vector<ElasticBody> bodies,
-                         ColliderContact& colliders)
-        : map_(map), bodies_(std::move(bodies)), colliders_(colliders) {}
+                         std::vector<ContactEnergy*> contacts)
+        : map_(map), bodies_(std::move(bodies)), contacts_(std::move(contacts)) {}
 
     /// What a step starts from. `mass`, `q_tilde` and `is_held` are indexed by q; `x_n` and `static_force` by corner
     /// (the latter empty in dynamics). is_free holds 1 in free components and 0 in prescribed ones.
@@ -67,7 +67,7 @@ class IncrementalPotential : public Potential {
 
     const CornerMap& map_;
     std::vector<ElasticBody> bodies_;
-    ColliderContact& colliders_;
+    std::vector<ContactEnergy*> contacts_;
     Step step_;
     Field x_, corner_gradient_, corner_product_, corner_diagonal_, inner_part_,
         inverse_diagonal_;

@@ -67,6 +67,10 @@ Stats stats_of(Assembly& assembly, const Stepper& stepper, const State& state) {
         stats.linear_momentum += momentum;
         stats.angular_momentum += x.cross(momentum);
     }
+    stats.collider_penetration = stepper.colliders().deepest_penetration(state.x, state.time);
+    const SurfaceContact::Report contact = stepper.surfaces().report(state.x);
+    stats.penetration = contact.penetration;
+    stats.gap = contact.gap;
     Field gradient(state.x.size());
     stats.smallest_J = std::numeric_limits<double>::infinity();
     for (AssembledBody& body : assembly.bodies) {

@@ -155,6 +155,12 @@ struct Collider {
     }
 };
 
+/// Between bodies: by their surfaces inside the solve, with themselves too, or on the background grid after it.
+struct Contact {
+    enum class Mode { Surface, Grid } mode = Mode::Surface;
+    Friction friction;
+};
+
 struct Probe {
     std::string name, body;
     std::variant<Vec3, std::string> at;  // a material point at rest [m], or a region's name
@@ -180,7 +186,7 @@ struct Scene {
     std::vector<Pin> pins;
     std::vector<Force> forces;
     std::vector<Collider> colliders;
-    Friction contact;  // between bodies
+    Contact contact;
     std::vector<Probe> probes;
 };
 

@@ -19,6 +19,10 @@ struct Stats {
     Vec3 linear_momentum{0, 0, 0}, angular_momentum{0, 0, 0};
     double total_mass = 0;  // on the degrees of freedom [kg]
     double smallest_J = 0;  // over all domains, now
+
+    // Of surfaces into colliders and into each other, and the smallest gap between bodies as far as it is below one:
+    // shares of a domain's edge.
+    double collider_penetration = 0, penetration = 0, gap = 1;
 };
 
 /// One row of probes.csv: a material point, or a region's centre with its mean stretch and volume.

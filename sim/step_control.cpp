@@ -25,7 +25,8 @@ void Stepper::advance(State& state, double end, double dt) {
         const double allowed =
             std::min({longest,
                       state.dt_limit,
-                      colliders_.largest_step(state.x, state.v, state.time, longest)});
+                      colliders_.largest_step(state.x, state.v, state.time, longest),
+                      surfaces_.largest_step(state.x, state.top_speed, longest)});
         const double n = std::max(1.0, std::ceil(remaining / allowed - rounding));
         const double length = remaining / n;
         if (try_step(state, length)) {

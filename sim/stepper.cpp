@@ -29,13 +29,26 @@ std::vector<IncrementalPotential::ElasticBody> elastic_bodies(Assembly& assembly
     return result;
 }
 
+std::vector<SurfaceBody> surface_bodies(const Scene& scene, const Assembly& assembly) {
+    std::vector<SurfaceBody> result;
+    if (scene.contact.mode == Contact::Mode::Surface)
+        for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+            const AssembledBody& body = assembly.bodies[b];
+            result.push_back({&body.lattice,
+                              body.begin,
+                              ContactSurface(scene.bodies[b], body.lattice, body.begin)});
+        }
+    return result;
+}
+
 }  // namespace
 
 Stepper::Stepper(const Scene& scene, Assembly& assembly)
     : scene_(scene),
       assembly_(assembly),
       colliders_(scene.colliders, assembly.contact_corners()),
-      potential_(map_, elastic_bodies(assembly), colliders_) {
+      surfaces_(surface_bodies(scene, assembly), scene.contact.friction),
+      potential_(map_, elastic_bodies(assembly), {&colliders_, &surfaces_}) {
     for (const AssembledBody& body : assembly.bodies)
         ranges_.push_back({body.begin, body.end, body.cell_size});
 }
@@ -151,7 +164,7 @@ void Stepper::prescribe_dofs(const State& state) {
 }
 
 void Stepper::exchange_contact(const State& state, double dt) {
-    if (assembly_.bodies.size() < 2)
+    if (scene_.contact.mode != Contact::Mode::Grid || assembly_.bodies.size() < 2)
         return;
     Field& change = corner_;
     change = moved_;
@@ -165,7 +178,7 @@ void Stepper::exchange_contact(const State& state, double dt) {
                      {state.x, assembly_.mass, assembly_.outside, prescribed_.is_free},
                      cell_size,
                      dt,
-                     scene_.contact,
+                     scene_.contact.friction,
                      change);
 
     move_through_grid(change);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/assembly.h"
+#include "sim/contact/surface_contact.h"
 #include "sim/incremental_potential.h"
 #include "sim/pinning.h"
 #include "sim/rigid_motion.h"
@@ -40,6 +41,10 @@ class Stepper {
 
     const Field& reaction() const { return reaction_; }
 
+    const ColliderContact& colliders() const { return colliders_; }
+
+    const SurfaceContact& surfaces() const { return surfaces_; }
+
     const Prescribed& prescribed() const { return prescribed_; }
 
     const IncrementalPotential& potential() const { return potential_; }
@@ -70,6 +75,7 @@ class Stepper {
     bool try_implicit(State& state, double dt);
     bool try_bdf2(State& state, double dt);
     bool solve_step(const State& state, double dt, Scheme scheme);
+    bool minimize_with_contact(const NewtonOptions& options, int most_passes);
     void end_implicit(State& state, double dt);
     void guess(const State& state);
     void balance_momentum();
@@ -79,7 +85,7 @@ class Stepper {
     double explicit_limit(const State& state) const;
     double seen_frequency(const State& state) const;
     bool try_explicit(State& state, double dt);
-    void restrain_by_colliders(const State& state, double dt);
+    void restrain_by_contact(const State& state, double dt);
     void set_explicit_reactions(const State& state, double dt);
 
     // equilibrium.cpp
@@ -93,6 +99,7 @@ class Stepper {
     std::vector<CornerMap::BodyRange> ranges_;
     CornerMap map_;
     ColliderContact colliders_;
+    SurfaceContact surfaces_;  // empty where contact is on the grid
     IncrementalPotential potential_;
     NewtonScratch scratch_;
     NewtonSummary summary_;  // of the last solve

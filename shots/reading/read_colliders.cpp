@@ -65,12 +65,14 @@ std::vector<sim::Collider> read_colliders(TableReader& root) {
     return colliders;
 }
 
-sim::Friction read_contact(TableReader table) {
-    enum class Mode { Grid };
-    table.choice<Mode>("mode", {{"grid", Mode::Grid}}, {"surface"}, "grid");
-    const sim::Friction friction = read_friction(table);
+sim::Contact read_contact(TableReader table) {
+    using Mode = sim::Contact::Mode;
+    sim::Contact contact;
+    contact.mode = table.choice<Mode>(
+        "mode", {{"surface", Mode::Surface}, {"grid", Mode::Grid}}, {}, "surface");
+    contact.friction = read_friction(table);
     table.finish();
-    return friction;
+    return contact;
 }
 
 }  // namespace shots

@@ -59,7 +59,7 @@ std::vector<sim::Probe> read_probes(TableReader& root, const std::vector<sim::Bo
 std::vector<sim::Collider> read_colliders(TableReader& root);
 
 /// [contact]
-sim::Friction read_contact(TableReader table);
+sim::Contact read_contact(TableReader table);
 
 /// frames = "1-48"
 FrameRange read_frames(TableReader& root);

@@ -14,7 +14,8 @@ namespace {
 const std::string stats_header =
     "frame,time,steps,newton_iterations,cg_iterations,kinetic_energy,elastic_energy,"
     "gravitational_energy,linear_momentum_x,linear_momentum_y,linear_momentum_z,"
-    "angular_momentum_x,angular_momentum_y,angular_momentum_z,total_mass,smallest_j,seconds";
+    "angular_momentum_x,angular_momentum_y,angular_momentum_z,total_mass,smallest_j,collider_"
+    "penetration,penetration,gap,seconds";
 const std::string probes_header = "frame,time,name,x,y,z,stretch,volume";
 const std::string pins_header =
     "frame,time,pin,force_x,force_y,force_z,moment_x,moment_y,moment_z";
@@ -59,7 +60,13 @@ FrameRows frame_rows(int frame,
         + fmt::format(",{},{},{}", stats.steps, stats.newton_iterations, stats.cg_iterations)
         + columns({stats.kinetic_energy, stats.elastic_energy, stats.gravitational_energy})
         + columns(stats.linear_momentum) + columns(stats.angular_momentum)
-        + columns({stats.total_mass, stats.smallest_J, seconds}) + "\n";
+        + columns({stats.total_mass,
+                   stats.smallest_J,
+                   stats.collider_penetration,
+                   stats.penetration,
+                   stats.gap,
+                   seconds})
+        + "\n";
     for (const sim::ProbeRow& probe : probes)
         rows.probes += start + "," + field(probe.name) + columns(probe.position)
                        + (probe.is_region ? columns({probe.stretch, probe.volume}) : ",,")

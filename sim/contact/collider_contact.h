@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/base/field.h"
+#include "sim/contact/contact_energy.h"
 #include "sim/contact/moving_collider.h"
 
 #include <vector>
@@ -29,7 +30,7 @@ struct ContactCorner {
 /// spring, k/2 |u_t|², which no force makes slide. k = contact_stiffness E s leaves a depth p s / (k / s) under a pressure p,
 /// i.e. less than a thousandth of a domain for bodies that carry their own weight; corners of a body whose top speed
 /// lately was v meet m v² / d_impact² where that is more: d_impact = s/100 stops one that comes so fast.
-class ColliderContact {
+class ColliderContact : public ContactEnergy {
   public:
     ColliderContact(const std::vector<Collider>& colliders, std::vector<ContactCorner> corners);
 
@@ -49,23 +50,18 @@ class ColliderContact {
     /// Whether a corner has begun or ceased to touch since the start of the step that has led to x.
     bool has_changed_touch(const Field& x) const;
 
-    /// Adds ∂/∂x to `gradient` (#C) [N] and returns the energy [J]. Friction is left out where dt is 0 (statics).
-    double add_gradient(const Field& x, Field& gradient) const;
+    /// Friction is left out where dt is 0 (statics).
+    double add_gradient(const Field& x, Field& gradient) const override;
 
-    /// Keeps the 3×3 Hessians of the corners that touch at x; curvature of the collider is left out, so that they are
-    /// positive semi-definite.
-    void linearize(const Field& x);
+    /// Curvature of the collider is left out of the Hessian.
+    void linearize(const Field& x) override;
+    void add_product(const Field& u, Field& product) const override;
+    void add_diagonal(Field& diagonal) const override;
 
     /// What colliders take from velocities v (#C) that would move corners from x in an explicit step of dt: the part that
     /// would end inside, and friction of up to mu times as much, each corner for itself. Inelastic, so that no energy
     /// comes of it (Moreau's stepping).
     void restrain(const Field& x, double dt, Field& v) const;
-
-    /// product += H u.
-    void add_product(const Field& u, Field& product) const;
-
-    /// diagonal += diag H.
-    void add_diagonal(Field& diagonal) const;
 
     /// The deepest penetration at x and `time`, as a share of the domain's edge.
     double deepest_penetration(const Field& x, double time) const;

@@ -30,7 +30,7 @@ const Arrows allowed = {
     {"sim/solver", {"assets/*", "sim/base"}},
     {"sim/grid", {"assets/*", "sim/base"}},
     {"sim/elasticity", {"assets/*", "sim/scene.h", "sim/base", "sim/materials", "sim/lattice"}},
-    {"sim/contact", {"assets/*", "sim/scene.h", "sim/base"}},
+    {"sim/contact", {"assets/*", "sim/scene.h", "sim/base", "sim/lattice", "sim/embedding"}},
     {"sim/enrichment", {"assets/*", "sim/scene.h", "sim/base", "sim/lattice"}},
     {"sim/embedding", {"assets/*", "sim/lattice"}},
 

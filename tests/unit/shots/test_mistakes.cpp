@@ -147,7 +147,6 @@ TEST_CASE("words of features to come are told apart from mistakes") {
         {"dt     = \"1 ms\"", "elements = \"tet\"", "9:12: ", "not available yet"},
         {"dt     = \"1 ms\"", "tolerance = \"1%\"", "9:13: ", "not available yet"},
         {"density = 1000", "density = 1000\nmodel = \"snow\"", "21:9: ", "not available yet"},
-        {"[output]", "[contact]\nmode = \"surface\"\n[output]", "41:8: ", "not available yet"},
         {"size = [64, 36]", "images = [\"exr\"]", "41:11: ", "not available yet"},
         {"size = [64, 36]", "renderer = \"raster\"", "41:12: ", "not available yet"},
     })));

@@ -22,7 +22,7 @@ TEST_CASE("overrides replace and add words, typed as in the file") {
     CHECK(bar.regions[1].density == 2000);  // inherits the override too
     CHECK(shot.scene.solver.method == sim::Method::Fem);
     CHECK(shot.scene.solver.damping == 0.5);
-    CHECK(shot.scene.contact.stick);
+    CHECK(shot.scene.contact.friction.stick);
     CHECK(shot.scene.pins.front().only == std::array{true, false, false});
     CHECK(std::get<sim::Gravity>(shot.scene.forces.front()).acceleration == Vec3(0, 0, -1));
     CHECK(shot.frames.numbers() == std::vector{5, 6, 7});

@@ -47,7 +47,7 @@ TEST_CASE("the whole vocabulary is read") {
     CHECK(std::get<sim::DeadLoad>(scene.forces.at(1)).body == "bar");
     CHECK(scene.colliders.at(0).friction.coefficient == 0.4);
     CHECK(shot.render.props.at(0).point == Vec3(0, 0, -0.6));
-    CHECK(scene.contact.coefficient == 0.3);
+    CHECK(scene.contact.friction.coefficient == 0.3);
     CHECK(std::get<std::string>(scene.probes.at(1).at) == "soft");
     CHECK(shot.render.samples == 64);
 }

@@ -1,0 +1,97 @@
+#include "sim/contact/contact_surface.h"
+
+#include "sim/embedding/embedding.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <map>
+
+namespace sim {
+
+namespace {
+
+constexpr double spacing = 0.5;    // of samples, in domain edges
+constexpr double cluster = 0.4;    // at most one vertex per cube of this edge, in domain edges
+constexpr double voxel = 1.0 / 3;  // of the distance field, in domain edges
+
+struct Sample {
+    Vec3 position{0, 0, 0};
+    double area = 0;
+};
+
+/// The vertices of a mesh, then the middles of equal parts of its triangles, which carry the area.
+std::vector<Sample> samples_of(const assets::TriangleMesh& mesh, double distance) {
+    std::vector<Sample> samples;
+    for (const Vec3& x : mesh.positions)
+        samples.push_back({x, 0});
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Vec3 &A = mesh.positions[a], &B = mesh.positions[b], &C = mesh.positions[c];
+        const double longest = std::max({(B - A).norm(), (C - B).norm(), (A - C).norm()});
+        const int n = std::max(1, static_cast<int>(std::ceil(longest / distance)));
+        const double area = (B - A).cross(C - A).norm() / 2 / (n * n);
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n - i; ++j)
+                for (int down = 0; down < (j + 1 < n - i ? 2 : 1); ++down) {
+                    const double u = (i + (1 + down) / 3.0) / n, v = (j + (1 + down) / 3.0) / n;
+                    samples.push_back({A + u * (B - A) + v * (C - A), area});
+                }
+    }
+    return samples;
+}
+
+/// The first sample in each cube of edge `size` stands for all of them.
+std::vector<Sample> thinned(const std::vector<Sample>& samples, double size) {
+    std::map<std::array<int, 3>, std::size_t> of_cube;
+    std::vector<Sample> result;
+    for (const Sample& sample : samples) {
+        std::array<int, 3> cube;
+        for (int k = 0; k < 3; ++k)
+            cube[k] = static_cast<int>(std::floor(sample.position[k] / size));
+        const auto [at, is_new] = of_cube.try_emplace(cube, result.size());
+        if (is_new)
+            result.push_back(sample);
+        else
+            result[at->second].area += sample.area;
+    }
+    return result;
+}
+
+assets::DistanceField field_of(const Body& body, double edge) {
+    const double size = voxel * edge;
+    return {*assets::make_solid(body.source, size, 4 * edge), size};
+}
+
+}  // namespace
+
+ContactSurface::ContactSurface(const Body& body, const Lattice& lattice, int first_corner)
+    : distance(field_of(body, lattice.edge)) {
+    const double s = lattice.edge;
+    const assets::Surface surface = assets::make_surface(body.source, spacing * s);
+    const std::vector<Sample> samples =
+        thinned(samples_of(surface.mesh, spacing * s), cluster * s);
+    std::vector<Vec3> points;
+    Vec3 low = samples.front().position, high = low;
+    for (const Sample& sample : samples) {
+        points.push_back(sample.position);
+        low = low.cwiseMin(sample.position);
+        high = high.cwiseMax(sample.position);
+    }
+    thickness = (high - low).minCoeff();
+    const std::vector<Binding> bindings = bind_points(lattice, points);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const int p = bindings[i].domain;
+        const double mu = lattice.mu[p], lambda = lattice.lambda[p];
+        ContactVertex vertex;
+        vertex.rest = points[i];
+        vertex.weights = bindings[i].weights;
+        vertex.area = samples[i].area;
+        vertex.young_modulus = mu * (3 * lambda + 2 * mu) / (lambda + mu);
+        vertex.wave_speed = std::sqrt(vertex.young_modulus / lattice.density[p]);
+        for (int a = 0; a < 8; ++a)
+            vertex.corners[a] = first_corner + lattice.corners[p][a];
+        vertices.push_back(vertex);
+    }
+}
+
+}  // namespace sim
