@@ -79,12 +79,27 @@ bool Stepper::minimize_with_contact(const NewtonOptions& options, int most_passe
         summary_ = minimize(potential_, options, q_, scratch_);
         newton_iterations += summary_.iterations;
         cg_iterations += summary_.linear_iterations;
+        if (summary_.termination == Termination::NotFinite && summary_.iterations == 0
+            && start_from_rest())
+            continue;
         if (summary_.termination != Termination::Converged)
             return false;
         if (pass == most_passes || surfaces_.empty()
             || surfaces_.relinearize(potential_.positions()) < depth_tolerance)
             return true;
     }
+}
+
+bool Stepper::start_from_rest() {
+    // A guess may turn a domain inside out that the step itself does not: where corners are now is the safer start.
+    const auto& step = potential_.step();
+    double change = 0;
+    for (int i = 0; i < map_.n_dofs(); ++i) {
+        const Vec3p guessed = q_[i] * step.is_free[i];
+        change += dot(guessed, guessed);
+        q_[i] -= guessed;
+    }
+    return change > 0;
 }
 
 void Stepper::end_implicit(State& state, double dt) {

@@ -78,6 +78,7 @@ class Stepper {
     bool minimize_with_contact(const NewtonOptions& options, int most_passes);
     void end_implicit(State& state, double dt);
     void guess(const State& state);
+    bool start_from_rest();
     void balance_momentum();
     void set_reactions();
 

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <string>
 
 namespace {
 
@@ -50,19 +51,99 @@ TEST_CASE(
     scene.bodies[1].velocity = {-speed / 2, 0.1, 0};
     sim::Simulation simulation(scene, frame_time);
     const sim::Stats start = simulation.stats();
-    double deepest = 0, highest = energy(start);
+    const double momentum = 0.5 * speed * start.total_mass;
+    double deepest = 0, highest = energy(start), lowest = highest;
     for (int k = 1; k <= 25; ++k) {
         simulation.advance_to(4e-3 * k);
         const sim::Stats now = simulation.stats();
-        CHECK((now.linear_momentum - start.linear_momentum).norm() < 1e-9 * 13.5 * speed);
-        CHECK((now.angular_momentum - start.angular_momentum).norm()
-              < 0.02 * start.angular_momentum.norm() + 1e-9);
+        CHECK((now.linear_momentum - start.linear_momentum).norm() < 1e-9 * momentum);
+        CHECK((now.angular_momentum - start.angular_momentum).norm() < 0.01 * momentum * 0.3);
         CHECK(energy(now) < highest * (1 + 1e-3));
-        highest = std::min(highest, energy(now));
+        // What velocity Verlet keeps is not the energy itself, but one that differs where modes swing fast.
+        if (steps != sim::Steps::Explicit)
+            highest = std::min(highest, energy(now));
+        lowest = std::min(lowest, energy(now));
         deepest = std::max(deepest, now.penetration);
     }
     WARN("deepest penetration " << deepest << " domain edges; energy kept "
-                                << highest / energy(start));
+                                << lowest / energy(start));
     CHECK(deepest < 0.02);
-    CHECK(highest < 0.9999 * energy(start));  // they have met
+    CHECK(lowest < 0.99 * energy(start));  // they have met
+}
+
+TEST_CASE("a ball of 20 m/s does not pass through a plate thinner than a domain") {
+    sim::Scene scene;
+    scene.solver.method = sim::Method::Fem;
+    scene.solver.dt = 1e-3;
+    scene.bodies.push_back(block("plate", {-0.3, -0.3, 0}, {0.6, 0.6, 0.03}, 0.05, 1e6));
+    sim::Body ball = block("ball", {0, 0, 0}, {1, 1, 1}, 0.05, 1e6);
+    ball.source.geometry = assets::Shape{assets::Sphere{{0, 0, 0.2}, 0.1}};
+    ball.velocity = {0, 0, -20};
+    scene.bodies.push_back(ball);
+    sim::Pin rim;
+    rim.name = "rim";
+    rim.body = "plate";
+    rim.select.is = sim::Selector::HalfSpace{{-0.29, 0, 0}, {1, 0, 0}};
+    scene.pins.push_back(rim);
+    scene.probes = {{"ball", "ball", std::string("all")}, {"plate", "plate", Vec3(0, 0, 0.03)}};
+    sim::Simulation simulation(scene, frame_time);
+    for (int k = 1; k <= 40; ++k) {
+        simulation.advance_to(1e-3 * k);
+        const auto probes = simulation.probes();
+        REQUIRE(probes[0].position.z() > probes[1].position.z());
+        CHECK(simulation.stats().penetration < 0.05);
+    }
+}
+
+TEST_CASE("a strip that folds comes to lie on itself") {
+    // Its free end is carried over the held one, and let go.
+    sim::Scene scene;
+    scene.solver.method = sim::Method::Fem;
+    scene.solver.dt = 2e-3;
+    scene.solver.damping = 2;
+    scene.bodies.push_back(block("strip", {0, 0, 0}, {1.2, 0.1, 0.05}, 0.05, 2e4));
+    scene.forces.push_back(sim::Gravity{{0, 0, -10}});
+    scene.colliders.push_back({sim::PlaneShape{{0, 0, 0}, {0, 0, 1}}, {true, 0}});
+    sim::Pin end;
+    end.name = "end";
+    end.body = "strip";
+    end.select.is = sim::Selector::HalfSpace{{1.15, 0, 0}, {-1, 0, 0}};
+    end.moves = sim::Pin::Spin{{0, -1, 0}, {0.6, 0.05, 0.15}, 3.0};
+    end.until = 1.0;
+    scene.pins.push_back(end);
+    scene.probes = {{"end", "strip", Vec3(1.2, 0.05, 0.025)}};
+    sim::Simulation simulation(scene, frame_time);
+    double deepest = 0;
+    for (int k = 1; k <= 50; ++k) {
+        simulation.advance_to(0.04 * k);
+        deepest = std::max(deepest, simulation.stats().penetration);
+    }
+    WARN("deepest " << deepest);
+    CHECK(deepest < 0.02);
+    CHECK(simulation.probes()[0].position.x() < 0.4);   // folded over
+    CHECK(simulation.probes()[0].position.z() > 0.06);  // on top of itself
+}
+
+TEST_CASE("a stack rests with less than 1% of a domain inside each other") {
+    sim::Scene scene;
+    scene.solver.method = GENERATE(sim::Method::Fem, sim::Method::Domains);
+    scene.solver.dt = 2e-3;
+    scene.solver.damping = 3;
+    scene.forces.push_back(sim::Gravity{{0, 0, -10}});
+    scene.colliders.push_back({sim::PlaneShape{{0, 0, 0}, {0, 0, 1}}, {false, 0.5}});
+    scene.contact.friction = {false, 0.5};
+    for (int k = 0; k < 3; ++k) {
+        const std::string name = "cube" + std::to_string(k);
+        scene.bodies.push_back(
+            block(name.c_str(), {0.03 * k, 0, 0.002 + 0.202 * k}, {0.2, 0.2, 0.2}, 0.05, 1e5));
+        scene.probes.push_back({name, name, std::string("all")});
+    }
+    sim::Simulation simulation(scene, frame_time);
+    simulation.advance_to(2);
+    const sim::Stats stats = simulation.stats();
+    CHECK(stats.penetration < 0.01);
+    CHECK(stats.collider_penetration < 0.01);
+    CHECK(stats.kinetic_energy < 1e-3);
+    for (int k = 0; k < 3; ++k)
+        CHECK(simulation.probes()[k].position.x() == Approx(0.1 + 0.03 * k).margin(0.005));
 }

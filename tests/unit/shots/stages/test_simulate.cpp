@@ -82,7 +82,8 @@ TEST_CASE("tables carry the agreed headers and one row per frame and thing") {
     CHECK(stats[0]
           == "frame,time,steps,newton_iterations,cg_iterations,kinetic_energy,elastic_energy,"
              "gravitational_energy,linear_momentum_x,linear_momentum_y,linear_momentum_z,"
-             "angular_momentum_x,angular_momentum_y,angular_momentum_z,total_mass,smallest_j,seconds");
+             "angular_momentum_x,angular_momentum_y,angular_momentum_z,total_mass,smallest_j,"
+             "collider_penetration,penetration,gap,seconds");
     CHECK_THAT(stats[1], Contains("1001,0,2,0,0,1,0,0,0,0,0,0.1,0,-1e-300,8,0.5,"));
 
     // Numbers read back as the same double: history after the first step is 0.7 + 1/8 + 1/3.
