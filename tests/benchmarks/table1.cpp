@@ -1,0 +1,130 @@
+// Every row of the paper's Table 1: its shot with its number of domains, grid and step, on one thread and on all. [Z18 §6]
+// Usage: table1 [ROW]...     rows by the name of their shot, all where none is named; CSV on stdout
+// The whole shot is simulated; a row's time is the mean over its steps, without pictures. The paper prints minutes per
+// frame and saves every 300 steps; where a frame is 1/30 s instead, both columns shrink alike and the ratio stays.
+#include "shots/shot_file.h"
+#include "sim/simulation.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <fmt/format.h>
+#include <string>
+#include <vector>
+
+namespace {
+
+constexpr double steps_per_frame = 300;
+
+struct Row {
+    const char *figure, *shot, *method;
+    std::vector<std::string> overrides;
+    double paper_minutes = 0;  // per frame
+};
+
+const std::vector<Row>& rows() {
+    static const std::vector<Row> table = {
+        {"8", "layered_cube", "enriched", {}, 17.811},
+        {"9", "toy_ship", "enriched", {}, 14.927},
+        {"10", "two_balls", "enriched", {}, 1.566},
+        {"10", "two_balls", "mpm", {"solver.method=mpm"}, 0.209},
+        {"11", "flower", "enriched", {}, 8.3317},
+        {"11", "flower", "enriched, grid / 2", {"solver.grid_ratio=2"}, 7.2964},
+        {"11", "flower", "enriched, grid / 4", {"solver.grid_ratio=4"}, 7.651},
+        {"12", "dropped_ball", "enriched", {}, 6.963},
+        {"13", "bar", "enriched", {}, 0.451},
+        {"13", "bar", "mpm", {"solver.method=mpm", "solver.kernel=cubic"}, 0.065},
+        {"13", "bar", "fem", {"solver.method=fem"}, 0.013},
+        {"14", "snow_bunny", "enriched", {}, 36.634},
+        {"15", "four_cubes", "enriched", {}, 73.717}};
+    return table;
+}
+
+struct Timing {
+    int steps = 0, cg_iterations = 0;
+    double processor = 0, wall = 0;  // [s]
+};
+
+double processor_seconds() {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+double wall_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+Timing simulate(const shots::Shot& shot, std::size_t n_threads) {
+    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, n_threads);
+    sim::Simulation simulation(shot.scene, 1 / shot.fps);
+    Timing timing;
+    const double processor = processor_seconds(), wall = wall_seconds();
+    for (int frame = shot.frames.first + 1; frame <= shot.frames.last; ++frame) {
+        simulation.advance_to(shot.time_of(frame));
+        const sim::Stats stats = simulation.stats();
+        timing.steps += stats.steps;
+        timing.cg_iterations += stats.cg_iterations;
+    }
+    timing.processor = processor_seconds() - processor;
+    timing.wall = wall_seconds() - wall;
+    return timing;
+}
+
+int n_domains(const sim::Scene& scene) {
+    const sim::Simulation simulation(scene, 1);
+    int sum = 0;
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+        sum += simulation.lattice(static_cast<int>(b)).n_domains();
+    return sum;
+}
+
+/// On one thread the processor's time counts, as the machine may be shared; on several the clock's.
+void print_row(const Row& row, const shots::Shot& shot, std::size_t n_threads) {
+    const Timing timing = simulate(shot, n_threads);
+    const double seconds = (n_threads == 1 ? timing.processor : timing.wall) / timing.steps;
+    const double minutes = seconds * steps_per_frame / 60;
+    fmt::print("{},{},\"{}\",{},{},{},{},{:.1f},{:.4f},{:.3g},{:.5g},{:.0f}\n",
+               row.figure,
+               row.shot,
+               row.method,
+               n_domains(shot.scene),
+               shot.scene.solver.dt.value_or(0),
+               n_threads,
+               timing.steps,
+               static_cast<double>(timing.cg_iterations) / timing.steps,
+               1e3 * seconds,
+               minutes,
+               row.paper_minutes,
+               row.paper_minutes / minutes);
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::vector<std::string> asked(argv + 1, argv + argc);
+    const auto n_all = static_cast<std::size_t>(tbb::info::default_concurrency());
+    fmt::print(
+        "figure,shot,method,domains,dt_s,threads,steps,cg_per_step,ms_per_step,"
+        "minutes_per_frame,paper_minutes_per_frame,times_faster\n");
+    try {
+        for (const Row& row : rows()) {
+            if (!asked.empty()
+                && std::find(asked.begin(), asked.end(), row.shot) == asked.end())
+                continue;
+            const shots::Shot shot = shots::load_shot(
+                fmt::format("{}/shots/{}.toml", SOURCE_ROOT, row.shot), row.overrides);
+            for (const std::size_t n_threads : {std::size_t{1}, n_all})
+                print_row(row, shot, n_threads);
+        }
+    } catch (const std::exception& error) {
+        std::fflush(stdout);
+        fmt::print(stderr, "{}\n", error.what());
+        return 1;
+    }
+    return 0;
+}
