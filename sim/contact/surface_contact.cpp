@@ -118,6 +118,19 @@ double invert_trilinear(const std::array<Vec3, 8>& corners, const Vec3& point, V
     return (-xi).cwiseMax(xi - Vec3::Ones()).cwiseMax(0.0).maxCoeff();
 }
 
+/// Along the surface's outer normal at a vertex today, F^-T grad phi. Where a body is crushed, a vertex also nears places
+/// of its own side: only what faces it can be met.
+Vec3 outward(const SurfaceBody& body, const ContactVertex& vertex, const Field& x) {
+    Vec3 gradient;
+    body.surface.distance.at(vertex.rest, gradient);
+    std::array<Vec3, 8> corners;
+    for (int a = 0; a < 8; ++a)
+        corners[a] = unpadded(x[vertex.corners[a]]);
+    const Mat3 F =
+        trilinear_gradient(local_coordinates(vertex.weights), body.lattice->edge, corners);
+    return F.inverse().transpose() * gradient;
+}
+
 }  // namespace
 
 struct SurfaceContact::Place {
@@ -258,7 +271,8 @@ void SurfaceContact::find_contacts(int k,
             Contact contact;
             contact.vertex = &vertex;
             contact.pair = k;
-            if (!linearize_depth(b, place, x, contact) || contact.phi > margin)
+            if (!linearize_depth(b, place, x, contact) || contact.phi > margin
+                || (is_self && contact.normal.dot(outward(a, vertex, x)) > 0))
                 continue;
             parts[begin / vertex_chunk].push_back(contact);
         }
