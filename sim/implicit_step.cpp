@@ -23,12 +23,13 @@ bool Stepper::try_implicit(State& state, double dt) {
 
 bool Stepper::try_bdf2(State& state, double dt) {
     // BDF2 takes the motion before as smooth. Where a corner begins or ceases to touch a collider it is not: the velocity
-    // jumps, and to continue the jump would create energy. Such a step is one of backward Euler, as is the one after it.
+    // jumps, and to continue the jump would create energy. Nor is it smooth while surfaces touch, whose energy is linearised anew in
+    // every step. Such a step is one of backward Euler, as is the one after it.
     const bool is_smooth = state.last_dt == 0 || !state.x_before.empty();
     bool solved = solve_step(state, dt, is_smooth ? Scheme::Bdf2 : Scheme::BackwardEuler);
     const bool has_event = solved
                            && (colliders_.has_changed_touch(potential_.positions())
-                               || surfaces_.has_changed_touch(potential_.positions()));
+                               || surfaces_.has_touch(potential_.positions()));
     if (has_event && is_smooth)
         solved = solve_step(state, dt, Scheme::BackwardEuler);
     if (!solved)

@@ -155,9 +155,9 @@ struct Collider {
     }
 };
 
-/// Between bodies: by their surfaces inside the solve, with themselves too, or on the background grid after it.
+/// Between bodies: on the background grid after the solve, or by their surfaces inside it, with themselves too.
 struct Contact {
-    enum class Mode { Surface, Grid } mode = Mode::Surface;
+    enum class Mode { Grid, Surface } mode = Mode::Grid;
     Friction friction;
 };
 

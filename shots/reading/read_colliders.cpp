@@ -69,7 +69,7 @@ sim::Contact read_contact(TableReader table) {
     using Mode = sim::Contact::Mode;
     sim::Contact contact;
     contact.mode = table.choice<Mode>(
-        "mode", {{"surface", Mode::Surface}, {"grid", Mode::Grid}}, {}, "surface");
+        "mode", {{"grid", Mode::Grid}, {"surface", Mode::Surface}}, {}, "grid");
     contact.friction = read_friction(table);
     table.finish();
     return contact;

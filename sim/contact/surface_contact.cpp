@@ -459,9 +459,9 @@ void SurfaceContact::add_diagonal(Field& diagonal) const {
     }
 }
 
-bool SurfaceContact::has_changed_touch(const Field& x) const {
+bool SurfaceContact::has_touch(const Field& x) const {
     return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& contact) {
-        return (depth_of(contact, separation(contact, x)) > 0) != contact.touched;
+        return contact.touched || depth_of(contact, separation(contact, x)) > 0;
     });
 }
 

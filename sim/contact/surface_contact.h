@@ -57,8 +57,8 @@ class SurfaceContact : public ContactEnergy {
     void add_product(const Field& u, Field& product) const override;
     void add_diagonal(Field& diagonal) const override;
 
-    /// Whether a vertex has begun or ceased to touch since the start of the step that has led to x.
-    bool has_changed_touch(const Field& x) const;
+    /// Whether a vertex touches, at the start of the step that has led to x or at its end.
+    bool has_touch(const Field& x) const;
 
     /// What contact takes from velocities v (#C) of corners of masses m (#C) [kg] that would move them from x in an
     /// explicit step: the part that would end inside, as impulses between vertex and domain.
