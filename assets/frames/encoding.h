@@ -1,4 +1,7 @@
 // Surfaces and frames as whole files, checked on the way out.
+//
+// A frame's content, per surface: 1 where it varies, else 0; numbers of vertices and attributes; positions; normals;
+// each attribute with its name; where it varies, the number of triangles, these, and colours.
 #pragma once
 
 #include "assets/frames/frame_cache.h"
@@ -15,7 +18,7 @@ std::string encode_surfaces(const std::vector<CachedSurface>& surfaces);
 std::vector<CachedSurface> decode_surfaces(const PackedFile& file);
 
 /// The same checks; `n_vertices` of each surface.
-std::string encode_frame(const Frame& frame, const std::vector<std::size_t>& n_vertices);
+std::string encode_frame(const Frame& frame, const std::vector<VertexCount>& n_vertices);
 Frame decode_frame(const PackedFile& file);
 
 std::string encode_checkpoint(int frame_number, const std::vector<std::byte>& state);

@@ -2,7 +2,7 @@
 //
 //   manifest.json      version, fingerprint and its keys, frame numbers planned, surfaces (topology file, names)
 //   surfaces.bin       topology and rest state of every surface, once
-//   frame.NNNN.bin     positions, normals and attributes of one frame (float32)
+//   frame.NNNN.bin     positions, normals and attributes of one frame (float32); topology of surfaces that vary
 //   checkpoint.bin     the simulation's state after the last whole frame (double), opaque here
 //
 // Every file is written under a temporary name in the same folder, flushed to disk, then renamed: a file that has
@@ -27,12 +27,14 @@
 
 namespace assets {
 
-/// What does not change during a shot, per surface that a body carries.
+/// What does not change during a shot, per surface. Of a varying surface, which is made anew for each frame (around
+/// points), only the names: it has no vertices here, and its frames bring triangles and colours.
 struct CachedSurface {
     std::string body, skin;
     std::vector<std::array<int, 3>> triangles;  // (#T) counter-clockwise from outside
     std::vector<Vec3f> rest_positions;          // (#V) [m]
     std::vector<Vec3f> region_color;  // (#V) linear RGB of the region that holds the vertex
+    bool varying = false;
 };
 
 /// What changes, per surface and frame.
@@ -41,7 +43,14 @@ struct SurfaceFrame {
     std::vector<Vec3f> normals;    // (#V) unit
     std::map<std::string, std::vector<float>>
         attributes;  // each (#V), e.g. "stretch", "enriched"
+
+    // Of varying surfaces alone, as in CachedSurface.
+    std::vector<std::array<int, 3>> triangles = {};  // (#T)
+    std::vector<Vec3f> region_color = {};            // (#V)
 };
+
+/// Of a surface; empty where it varies.
+using VertexCount = std::optional<std::size_t>;
 
 struct Frame {
     int number = 0;   // as in the shot's range
@@ -98,7 +107,7 @@ class FrameCacheWriter {
     std::filesystem::path folder_;
     std::unique_ptr<FolderLock> lock_;
     std::vector<int> frame_numbers_;
-    std::vector<std::size_t> n_vertices_;  // (#surfaces)
+    std::vector<VertexCount> n_vertices_;  // (#surfaces)
     int n_whole_frames_ = 0;
 };
 

@@ -19,10 +19,16 @@ FileHeader frame_header(const std::filesystem::path& folder, int number) {
     return header;
 }
 
+bool belongs_to(const SurfaceFrame& frame, const CachedSurface& surface) {
+    if (surface.varying)
+        return frame.region_color.size() == frame.positions.size();
+    return frame.positions.size() == surface.rest_positions.size() && frame.triangles.empty();
+}
+
 bool belongs_to(const Frame& frame, const std::vector<CachedSurface>& surfaces) {
     bool same = frame.surfaces.size() == surfaces.size();
     for (std::size_t s = 0; same && s < surfaces.size(); ++s)
-        same = frame.surfaces[s].positions.size() == surfaces[s].rest_positions.size();
+        same = belongs_to(frame.surfaces[s], surfaces[s]);
     return same;
 }
 

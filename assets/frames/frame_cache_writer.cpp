@@ -118,7 +118,8 @@ FrameCacheWriter::FrameCacheWriter(fs::path folder,
     wanted.surfaces_checksum = hexadecimal(checksum(surfaces_file));
     for (const CachedSurface& surface : surfaces) {
         wanted.surface_names.push_back(surface.body + "/" + surface.skin);
-        n_vertices_.push_back(surface.rest_positions.size());
+        n_vertices_.push_back(surface.varying ? VertexCount{}
+                                              : VertexCount{surface.rest_positions.size()});
     }
     // Whoever writes there may be about to change what the next lines read.
     if (fs::is_directory(folder_))

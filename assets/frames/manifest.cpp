@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int version = 1;
+constexpr int version = 2;
 
 /// Text that is not UTF-8 (file names) is stored with replacements; the digest still tells it apart.
 std::string text_of(const Json& json, int indent) {

@@ -16,7 +16,7 @@ namespace assets {
 namespace {
 
 constexpr std::array<char, 8> magic{'s', 'u', 'p', 'p', 'l', 'e', '\r', '\n'};
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t version = 2;
 
 // Content is compressed piece by piece, each preceded by its packed size: Blosc takes at most 2 GiB at once.
 using PieceSize = std::uint32_t;

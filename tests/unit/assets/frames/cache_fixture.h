@@ -86,11 +86,30 @@ inline assets::SurfaceFrame move_surface(const assets::CachedSurface& surface, i
     return moved;
 }
 
+/// A surface whose frames bring vertices and triangles of their own.
+inline assets::CachedSurface make_varying(const std::string& skin) {
+    assets::CachedSurface surface;
+    surface.body = "snow";
+    surface.skin = skin;
+    surface.varying = true;
+    return surface;
+}
+
+/// A fan of 4 + `number` vertices.
+inline assets::SurfaceFrame vary_surface(int number) {
+    const assets::CachedSurface fan = make_surface("", 4 + number);
+    assets::SurfaceFrame varied = move_surface(fan, number);
+    varied.triangles = fan.triangles;
+    varied.region_color = fan.region_color;
+    return varied;
+}
+
 inline assets::Frame make_frame(const std::vector<assets::CachedSurface>& surfaces,
                                 int number) {
     assets::Frame frame{number, (number - 1) / 24.0, {}};
     for (const auto& surface : surfaces)
-        frame.surfaces.push_back(move_surface(surface, number));
+        frame.surfaces.push_back(surface.varying ? vary_surface(number)
+                                                 : move_surface(surface, number));
     return frame;
 }
 

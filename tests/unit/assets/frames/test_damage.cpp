@@ -13,7 +13,7 @@ using Catch::Matchers::Contains;
 namespace {
 
 const std::vector<int> numbers{1, 2, 3};
-const std::vector<CachedSurface> surfaces{make_surface("skin", 6)};
+const std::vector<CachedSurface> surfaces{make_surface("skin", 6), make_varying("skin")};
 
 void write_cache(const std::filesystem::path& folder) {
     FrameCacheWriter writer(folder, fingerprint, numbers, surfaces, false);
@@ -139,8 +139,8 @@ TEST_CASE("a damaged manifest is refused by name, but gives way to --overwrite")
         write_file(path, "[1, 2]");
     }
     SECTION("other version") {
-        const std::size_t at = whole.find("\"version\": 1");
-        write_file(path, std::string(whole).replace(at, 12, "\"version\": 2"));
+        const std::size_t at = whole.find("\"version\": 2");
+        write_file(path, std::string(whole).replace(at, 12, "\"version\": 1"));
     }
 
     const auto before = contents(folder.path());

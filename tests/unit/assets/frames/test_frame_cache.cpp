@@ -19,6 +19,7 @@ void require_equal(const CachedSurface& a, const CachedSurface& b) {
     CHECK(a.triangles == b.triangles);
     CHECK(a.rest_positions == b.rest_positions);
     CHECK(a.region_color == b.region_color);
+    CHECK(a.varying == b.varying);
 }
 
 void require_equal(const Frame& a, const Frame& b) {
@@ -29,6 +30,8 @@ void require_equal(const Frame& a, const Frame& b) {
         CHECK(a.surfaces[s].positions == b.surfaces[s].positions);
         CHECK(a.surfaces[s].normals == b.surfaces[s].normals);
         CHECK(a.surfaces[s].attributes == b.surfaces[s].attributes);
+        CHECK(a.surfaces[s].triangles == b.surfaces[s].triangles);
+        CHECK(a.surfaces[s].region_color == b.surfaces[s].region_color);
     }
 }
 
@@ -92,6 +95,91 @@ TEST_CASE("surfaces without attributes, without vertices, and none at all are ke
     const FrameCacheReader none(folder.path() / "none");
     require_equal(none.read(-2), {-2, 0, {}});
     CHECK(none.bounds(-2) == std::pair<Vec3f, Vec3f>(Vec3f::Zero(), Vec3f::Zero()));
+}
+
+TEST_CASE("a varying surface brings triangles and colours of its own in every frame") {
+    const TemporaryFolder folder;
+    const std::vector<CachedSurface> mixed{
+        make_varying("snow"), surfaces[1], make_varying("b")};
+    FrameCacheWriter writer(folder.path(), fingerprint, {1, 2, 3}, mixed, false);
+    Frame last = make_frame(mixed, 3);
+    last.surfaces[0] = {};  // nothing is left
+    writer.write(make_frame(mixed, 1));
+    writer.write(make_frame(mixed, 2));
+    writer.write(last);
+
+    const FrameCacheReader reader(folder.path());
+    for (std::size_t s = 0; s < mixed.size(); ++s)
+        require_equal(reader.surfaces()[s], mixed[s]);
+    require_equal(reader.read(1), make_frame(mixed, 1));
+    require_equal(reader.read(2), make_frame(mixed, 2));
+    require_equal(reader.read(3), last);
+    CHECK(reader.read(2).surfaces[0].positions.size() == 6);
+
+    const std::string bytes = read_file(folder.path() / "frame.0002.bin");
+    writer.write(make_frame(mixed, 2));
+    CHECK(read_file(folder.path() / "frame.0002.bin") == bytes);
+}
+
+TEST_CASE("bounds follow a varying surface from frame to frame") {
+    const TemporaryFolder folder;
+    const std::vector<CachedSurface> snow{make_varying("snow")};
+    FrameCacheWriter writer(folder.path(), fingerprint, {1, 2}, snow, false);
+    for (const int number : {1, 2}) {
+        Frame frame = make_frame(snow, number);
+        for (Vec3f& x : frame.surfaces[0].positions)
+            x = Vec3f(1, 2, 3);
+        frame.surfaces[0].positions[0] = Vec3f(-1, 0, static_cast<float>(10 * number));
+        writer.write(frame);
+    }
+    const FrameCacheReader reader(folder.path());
+    CHECK(reader.bounds(1) == std::pair<Vec3f, Vec3f>({-1, 0, 3}, {1, 2, 10}));
+    CHECK(reader.bounds(2) == std::pair<Vec3f, Vec3f>({-1, 0, 3}, {1, 2, 20}));
+}
+
+TEST_CASE("a varying surface that makes no sense is refused") {
+    const TemporaryFolder folder;
+    const std::vector<CachedSurface> mixed{surfaces[1], make_varying("snow")};
+    FrameCacheWriter writer(folder.path(), fingerprint, {1}, mixed, false);
+    Frame frame = make_frame(mixed, 1);
+    SECTION("no colours") {
+        frame.surfaces[1].region_color.clear();
+    }
+    SECTION("a colour that is not finite") {
+        frame.surfaces[1].region_color[2].x() = std::nanf("");
+    }
+    SECTION("a triangle of vertices that are not there") {
+        frame.surfaces[1].triangles[0][1] = 5;
+    }
+    SECTION("a negative index") {
+        frame.surfaces[1].triangles[0][1] = -1;
+    }
+    SECTION("triangles of a surface that does not vary") {
+        frame.surfaces[0].triangles = {{0, 1, 2}};
+    }
+    SECTION("colours of a surface that does not vary") {
+        frame.surfaces[0].region_color.resize(7);
+    }
+    CHECK_THROWS_AS(writer.write(frame), std::logic_error);
+    CHECK_FALSE(std::filesystem::exists(folder.path() / "frame.0001.bin"));
+}
+
+TEST_CASE("a frame of a surface that varies is none of a cache of one that does not") {
+    const TemporaryFolder folder;
+    const std::vector<CachedSurface> fixed{make_surface("skin", 5)},
+        varying{make_varying("skin")};
+    FrameCacheWriter(folder.path() / "fixed", fingerprint, {1}, fixed, false)
+        .write(make_frame(fixed, 1));
+    FrameCacheWriter(folder.path() / "varying", fingerprint, {1}, varying, false)
+        .write(make_frame(varying, 1));
+    const auto first = folder.path() / "fixed" / "frame.0001.bin",
+               second = folder.path() / "varying" / "frame.0001.bin";
+    const std::string bytes = read_file(first);
+    write_file(first, read_file(second));
+    write_file(second, bytes);
+    for (const char* name : {"fixed", "varying"})
+        CHECK_THROWS_WITH(FrameCacheReader(folder.path() / name).read(1),
+                          Contains("belongs to another cache"));
 }
 
 TEST_CASE("frames larger than one compressed piece are kept") {
@@ -161,6 +249,9 @@ TEST_CASE("surfaces that make no sense are refused before anything is created") 
     }
     SECTION("colours") {
         wrong[0].region_color.pop_back();
+    }
+    SECTION("vertices of a varying surface") {
+        wrong[0].varying = true;
     }
     CHECK_THROWS_AS(FrameCacheWriter(folder.path() / "cache", fingerprint, {1}, wrong, false),
                     std::logic_error);
