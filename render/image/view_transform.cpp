@@ -19,14 +19,6 @@ float srgb_from_linear(float linear) {
                                 : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
 }
 
-float linear_from_srgb(float encoded) {
-    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
-}
-
-Vec3f linear_from_srgb(const Vec3f& encoded) {
-    return encoded.unaryExpr([](float c) { return linear_from_srgb(c); });
-}
-
 Vec3f view_transform(const Vec3f& linear) {
     return linear.unaryExpr(
         [](float c) { return srgb_from_linear(shoulder(std::max(c, 0.0f))); });

@@ -1,4 +1,5 @@
 #include "assets/base/error.h"
+#include "assets/base/srgb.h"
 #include "sim/embedding/creases.h"
 #include "sim/embedding/embedding.h"
 #include "sim/embedding/trilinear.h"
@@ -31,13 +32,6 @@ double spacing(const assets::Source& source, double domain_size) {
         return domain_size / 2;
     const auto solid = make_solid(source, domain_size, domain_size);
     return std::min(domain_size / 2, (solid->max - solid->min).maxCoeff() / across);
-}
-
-Vec3f linear_of_srgb(const Vec3f& color) {
-    const auto linear = [](float c) {
-        return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
-    };
-    return color.unaryExpr(linear);
 }
 
 /// The square root of the largest eigenvalue of C = F^T F, from the cubic's trigonometric solution.
@@ -104,7 +98,7 @@ EmbeddedSurface::EmbeddedSurface(const Lattice& lattice, const Body& body, const
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         const int region = layers.at(mesh.positions[v] - hair * lattice.edge * mesh.normals[v]);
         cached_.rest_positions.push_back(mesh.positions[v].cast<float>());
-        cached_.region_color.push_back(linear_of_srgb(body.regions[region].color));
+        cached_.region_color.push_back(assets::linear_from_srgb(body.regions[region].color));
         region_.push_back(static_cast<float>(region));
     }
     rest_normals_ = std::move(mesh.normals);
