@@ -12,7 +12,7 @@ namespace render {
 namespace {
 
 // Raise when the same options give another picture.
-constexpr int picture_version = 1;
+constexpr int picture_version = 2;
 
 void require(bool condition, const std::string& message, const char* key) {
     if (!condition)
@@ -29,11 +29,12 @@ std::string text(const Vec3& v) {
 
 std::string text(const Look& look) {
     constexpr std::string_view names[] = {"look", "region", "stretch"};
-    return fmt::format("color [{}, {}, {}] by {}, roughness {}, opacity {}",
+    return fmt::format("color [{}, {}, {}] by {}, {}, roughness {}, opacity {}",
                        look.color.x(),
                        look.color.y(),
                        look.color.z(),
                        names[int(look.color_by)],
+                       look.coated ? "coated" : "matt",
                        look.roughness,
                        look.opacity);
 }

@@ -17,7 +17,8 @@ enum class ColorBy { Look, Region, Stretch };
 struct Look {
     Vec3f color{0.8f, 0.8f, 0.8f};
     ColorBy color_by = ColorBy::Region;
-    float roughness = 0.5f;  // of the glossy coat, 0..1
+    bool coated = true;      // under a clear glossy coat; otherwise matt, as snow is
+    float roughness = 0.5f;  // of the coat, 0..1
     float opacity = 1.0f;    // below 1: a clear, slightly tinted body that shows what is inside
 };
 

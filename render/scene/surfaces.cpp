@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace render {
 
@@ -35,6 +36,7 @@ float mean_edge_of_bounds(const std::vector<Vec3f>& points) {
 // The inside takes the colour out of white light over about the body's size.
 Material material_of(const assets::CachedSurface& surface, const Look& look) {
     Material material;
+    material.coated = look.coated;
     material.roughness = look.roughness;
     if (look.opacity >= 1)
         return material;
@@ -72,30 +74,50 @@ Vec3f stretch_color(float stretch) {
 Surface::Surface(const assets::CachedSurface& cached, const Look& look)
     : cached_(cached),
       look_(look),
-      topology_(split_creases(cached.triangles, cached.rest_positions)),
-      material_(cached.rest_positions.empty() ? Material{} : material_of(cached, look)) {}
+      topology_(split_creases(cached.triangles, cached.rest_positions)) {
+    if (cached.varying && look.opacity < 1)
+        throw assets::Error(
+            assets::ErrorKind::Input,
+            fmt::format(
+                "body \"{}\" is made of points, which cannot be drawn clear: its opacity "
+                "is {}, 1 is allowed",
+                cached.body,
+                look.opacity),
+            "body." + cached.body + ".skin");
+    const bool never_drawn = cached.rest_positions.empty() && !cached.varying;
+    material_ = never_drawn ? Material{} : material_of(cached, look);
+}
 
 std::vector<Vec3f> Surface::colors(const assets::SurfaceFrame& frame) const {
-    const std::size_t n = cached_.rest_positions.size();
-    switch (look_.color_by) {
-        case ColorBy::Look:
-            return std::vector<Vec3f>(n, linear_from_srgb(look_.color));
-        case ColorBy::Region:
-            assets::check(cached_.region_color.size() == n, "a surface lacks region colours");
-            return cached_.region_color;
-        case ColorBy::Stretch:
-            break;
-    }
-    const auto stretch = frame.attributes.find("stretch");
-    assets::check(stretch != frame.attributes.end() && stretch->second.size() == n,
-                  "a frame lacks stretches");
+    const std::size_t n = frame.positions.size();
     std::vector<Vec3f> result;
-    for (const float value : stretch->second)
-        result.push_back(stretch_color(value));
+    if (look_.color_by == ColorBy::Look)
+        result.assign(n, linear_from_srgb(look_.color));
+    if (look_.color_by == ColorBy::Region) {
+        result = cached_.varying ? frame.region_color : cached_.region_color;
+        assets::check(result.size() == n, "a surface lacks region colours");
+    }
+    if (look_.color_by == ColorBy::Stretch) {
+        const auto stretch = frame.attributes.find("stretch");
+        assets::check(stretch != frame.attributes.end() && stretch->second.size() == n,
+                      "a frame lacks stretches");
+        for (const float value : stretch->second)
+            result.push_back(stretch_color(value));
+    }
+    for (Vec3f& color : result)
+        color = color.cwiseMax(0.0f).cwiseMin(1.0f);
     return result;
 }
 
+// Smooth all over, with the frame's normals: no edge of a heap of points is meant to be sharp.
+Mesh Surface::varying_at(const assets::SurfaceFrame& frame) const {
+    assets::check(frame.normals.size() == frame.positions.size(), "a frame lacks normals");
+    return {frame.triangles, frame.positions, frame.normals, colors(frame), material_};
+}
+
 Mesh Surface::at(const assets::SurfaceFrame& frame) const {
+    if (cached_.varying)
+        return varying_at(frame);
     const std::size_t n = cached_.rest_positions.size();
     assets::check(frame.positions.size() == n && frame.normals.size() == n,
                   "a frame does not fit its surface");
@@ -106,7 +128,7 @@ Mesh Surface::at(const assets::SurfaceFrame& frame) const {
     const std::vector<Vec3f> vertex_colors = colors(frame);
     for (const int vertex : topology_.source) {
         mesh.positions.push_back(frame.positions[vertex]);
-        mesh.colors.push_back(vertex_colors[vertex].cwiseMax(0.0f).cwiseMin(1.0f));
+        mesh.colors.push_back(vertex_colors[vertex]);
     }
     return mesh;
 }

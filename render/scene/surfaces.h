@@ -11,7 +11,8 @@ namespace render {
 /// One surface with what does not change over its frames.
 class Surface {
   public:
-    /// `cached` must live longer.
+    /// `cached` must live longer. Throws Error(Input) where the look of a varying surface is clear: what lies inside
+    /// of it, and how deep, is not known over the shot.
     Surface(const assets::CachedSurface& cached, const Look& look);
 
     /// The surface at a frame. Throws std::logic_error where the frame's arrays do not fit the surface, or where the
@@ -19,7 +20,9 @@ class Surface {
     Mesh at(const assets::SurfaceFrame& frame) const;
 
   private:
+    /// Of all vertices, 0..1.
     std::vector<Vec3f> colors(const assets::SurfaceFrame& frame) const;
+    Mesh varying_at(const assets::SurfaceFrame& frame) const;
 
     const assets::CachedSurface& cached_;
     Look look_;

@@ -18,6 +18,10 @@ render::Look read_look(TableReader table) {
                                   {{"region", ColorBy::Region}, {"stretch", ColorBy::Stretch}},
                                   {"stress"},
                                   "region");
+    look.coated = table.flag("coated", look.coated);
+    if (!look.coated && table.has("roughness"))
+        table.error("roughness",
+                    "'roughness' is the coat's: leave it out where 'coated' = false");
     look.roughness = static_cast<float>(
         table.number("roughness", Dimension::Number, fraction, look.roughness));
     look.opacity =

@@ -2,11 +2,13 @@
 #include "render/pathtrace/path_tracer.h"
 #include "render/render.h"
 #include "render/shot_pictures.h"
+#include "tests/unit/assets/frames/cache_fixture.h"
 #include "tests/unit/render/meshes.h"
 
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <xmmintrin.h>
@@ -69,6 +71,42 @@ TEST_CASE(
     CHECK(corner.minCoeff() > 0.1f);
 }
 
+TEST_CASE("a varying surface goes through the cache into pictures, as large as it is then") {
+    const tests::TemporaryFolder folder;
+    assets::CachedSurface snow;
+    snow.body = "snow";
+    snow.skin = "self";
+    snow.varying = true;
+    assets::FrameCacheWriter writer(folder.path(), {{"fps", "24"}}, {1, 2}, {snow}, false);
+    for (const int number : {1, 2}) {
+        const float radius = number == 1 ? 1.0f : 0.25f;
+        const Mesh ball =
+            testing::sphere(Vec3f::Zero(), radius, Vec3f(0.05f, 0.1f, 0.8f), testing::matt());
+        assets::SurfaceFrame surface{ball.positions, ball.normals, {}};
+        surface.triangles = ball.triangles;
+        surface.region_color = ball.colors;
+        writer.write({number, 0, {surface}});
+    }
+    const assets::FrameCacheReader cache(folder.path());
+    CHECK(cache.bounds(1).second.y() == Approx(1).epsilon(2e-3));
+    CHECK(cache.bounds(2).second.y() == Approx(0.25).epsilon(2e-3));
+
+    Options options;
+    options.width = 72, options.height = 40, options.samples = 4;
+    options.looks[{"snow", "self"}].coated = false;
+    Renderer renderer(cache, {1, 2}, options);
+    const auto n_blue = [&](int number) {
+        const Image picture = renderer.render(cache.read(number));
+        return std::count_if(picture.pixels.begin(), picture.pixels.end(), [](const Vec3f& p) {
+            return p.z() > 2 * p.x();
+        });
+    };
+    const auto large = n_blue(1), small = n_blue(2);
+    CHECK(large > 200);
+    CHECK(small > 10);
+    CHECK(large > 8 * small);  // 16 times the area, seen from outside of the middle
+}
+
 TEST_CASE("rendering leaves the thread's floating point mode alone") {
     const unsigned mode = _mm_getcsr() & ~0x3fu;  // without the sticky exception flags
     Shot().picture();
@@ -87,7 +125,7 @@ TEST_CASE("light that is not finite is refused with the pixel") {
 
 TEST_CASE("the picture's key tells every option apart") {
     const Options options;
-    std::vector<Options> others(9, options);
+    std::vector<Options> others(10, options);
     others[0].width = 961;
     others[1].samples = 65;
     others[2].up = {0, 0, 1};
@@ -97,6 +135,7 @@ TEST_CASE("the picture's key tells every option apart") {
     others[6].looks[{"a", "b"}].opacity = 0.5f;
     others[7].props.emplace_back();
     others[8].light_rig = "other";
+    others[9].looks[{"a", "b"}].coated = false;
     CHECK(picture_key(options) == picture_key(Options{}));
     for (const Options& other : others)
         CHECK(picture_key(other) != picture_key(options));

@@ -144,6 +144,36 @@ TEST_CASE("surfaces take their colour from the look, the regions or the stretch"
     CHECK_THROWS_AS(Surface(cached, Look{}).at(frame), std::logic_error);
 }
 
+TEST_CASE("a varying surface is drawn with the triangles, normals and colours of its frame") {
+    assets::CachedSurface cached;
+    cached.body = "snow";
+    cached.skin = "self";
+    cached.varying = true;
+    Look look;
+    look.coated = false;
+    const Surface surface(cached, look);
+    for (const int n_triangles : {12, 1, 0}) {
+        assets::SurfaceFrame frame{cube_positions, std::vector<Vec3f>(8, Vec3f::UnitY()), {}};
+        frame.triangles.assign(cube_triangles.begin(), cube_triangles.begin() + n_triangles);
+        frame.region_color.assign(8, Vec3f(0.9f, 1.2f, 0.8f));
+        const Mesh mesh = surface.at(frame);
+        CHECK(mesh.triangles == frame.triangles);
+        CHECK(mesh.positions == frame.positions);
+        CHECK(mesh.normals == frame.normals);  // no creases
+        CHECK(mesh.colors[7] == Vec3f(0.9f, 1, 0.8f));
+        CHECK_FALSE(mesh.material.coated);
+
+        frame.attributes["stretch"].assign(8, 1.5f);
+        Look by_stretch = look;
+        by_stretch.color_by = ColorBy::Stretch;
+        CHECK(Surface(cached, by_stretch).at(frame).colors[0] == stretch_color(1.5f));
+        frame.region_color.pop_back();
+        CHECK_THROWS_AS(surface.at(frame), std::logic_error);
+    }
+    look.opacity = 0.5f;
+    CHECK_THROWS_WITH(Surface(cached, look), Catch::Contains("cannot be drawn clear"));
+}
+
 TEST_CASE("the colours of stretch grow ever brighter") {
     const auto luminance = [](float stretch) {
         return stretch_color(stretch).dot(Vec3f(0.2126f, 0.7152f, 0.0722f));  // Rec.709

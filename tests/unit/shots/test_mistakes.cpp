@@ -55,6 +55,14 @@ TEST_CASE("missing words are told at their table") {
     })));
 }
 
+TEST_CASE("a matt look has no roughness") {
+    check_single_mistake({"[[pin]]\n",
+                          "[[body.bar.skin]]\nname = \"a\"\nsource = \"self\"\n"
+                          "look = { coated = false, roughness = 0.3 }\n[[pin]]\n",
+                          "30:38: ",
+                          "leave it out where 'coated' = false"});
+}
+
 TEST_CASE("unknown words get the nearest valid one") {
     check_single_mistake(GENERATE(values<Case>({
         {"[solver]", "[sovler]", "7:2: ", "unknown word 'sovler'; did you mean 'solver'?"},

@@ -77,7 +77,7 @@ TEST_CASE("the alternatives of the vocabulary are read") {
         "[[collider]]\nsphere = { center = [0, 0, -1], radius = 0.5 }\nfriction = \"stick\"\n"
         "[[body.bar.skin]]\nname = \"core\"\nsource = { sphere = { center = [0, 0, 0], radius "
         "= 1 } }\n"
-        "look = { color_by = \"stretch\", opacity = 0.5 }\n"
+        "look = { color_by = \"stretch\", opacity = 0.5, coated = false }\n"
         "[camera]\nposition = [1, 2, 3]\nlook_at = [0, 0, 0]\nlens = \"3.5 cm\"\n[output]");
     const Shot shot = load_text(text);
     const sim::Body& body = shot.scene.bodies.front();
@@ -96,6 +96,7 @@ TEST_CASE("the alternatives of the vocabulary are read") {
     CHECK(shot.scene.colliders.front().friction.stick);
     CHECK(body.skins.front().source.has_value());
     CHECK(shot.render.looks.at({"bar", "core"}).color_by == render::ColorBy::Stretch);
+    CHECK_FALSE(shot.render.looks.at({"bar", "core"}).coated);
     CHECK_FALSE(shot.render.camera.frame_bodies);
     CHECK(shot.render.camera.lens == 35);
 }
