@@ -134,6 +134,10 @@ std::vector<assets::SurfaceFrame> Simulation::deformed_surfaces() const {
     return result;
 }
 
+std::vector<PointCloud> Simulation::point_clouds() const {
+    return {};
+}
+
 std::vector<std::byte> Simulation::checkpoint() const {
     std::vector<std::byte> bytes;
     const State& state = impl_->state;

@@ -3,6 +3,7 @@
 
 #include "assets/frames/frame_cache.h"
 #include "sim/lattice/lattice.h"
+#include "sim/point_cloud.h"
 #include "sim/scene.h"
 
 #include <cstddef>
@@ -65,10 +66,13 @@ class Simulation {
     std::vector<ProbeRow> probes() const;
     std::vector<PinRow> pins() const;
 
-    /// Surfaces of all skins of all bodies, in order, then of the colliders that pictures need: topology, and their
-    /// state now.
+    /// Surfaces of all skins of all bodies made of domains, in order, then of the colliders that pictures need:
+    /// topology, and their state now.
     std::vector<assets::CachedSurface> surfaces() const;
     std::vector<assets::SurfaceFrame> deformed_surfaces() const;
+
+    /// Bodies made of material points, in order, now.
+    std::vector<PointCloud> point_clouds() const;
 
     /// Everything that later frames depend on, in double; restore() continues bit-identically.
     std::vector<std::byte> checkpoint() const;

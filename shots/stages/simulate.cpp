@@ -1,8 +1,10 @@
 #include "shots/stages/simulate.h"
 
 #include "assets/base/error.h"
+#include "assets/generators/point_surface.h"
 #include "shots/stages/interruption.h"
 #include "shots/stages/simulation_tables.h"
+#include "shots/stages/vdb_files.h"
 #include "sim/simulation.h"
 
 #include <chrono>
@@ -22,36 +24,88 @@ void check_job(const SimulateJob& job) {
                       "the frames to simulate are consecutive");
 }
 
+/// What a frame leaves beside its file in the cache.
+struct Companions {
+    explicit Companions(const std::filesystem::path& folder) : tables(folder), vdbs(folder) {}
+
+    /// Whether those of all frames up to the one with this index are there. `surfaces` tell which bodies are of points.
+    bool reach(const SimulateJob& job,
+               int index,
+               const std::vector<assets::CachedSurface>& surfaces) const {
+        const std::vector<int> frames(job.frames.begin(), job.frames.begin() + index + 1);
+        std::vector<std::string> of_points;
+        for (const assets::CachedSurface& surface : surfaces)
+            if (surface.varying)
+                of_points.push_back(surface.body);
+        return tables.reach(frames.back()) && vdbs.hold(of_points, frames);
+    }
+
+    void cut_after(int frame) const {
+        tables.cut_after(frame);
+        vdbs.cut_after(frame);
+    }
+
+    SimulationTables tables;
+    VdbFiles vdbs;
+};
+
 /// Whether nothing is left to do. Throws where the cache belongs to another fingerprint.
-bool is_complete(const SimulateJob& job, const SimulationTables& tables) {
+bool is_complete(const SimulateJob& job, const Companions& companions) {
+    const auto n_frames = static_cast<int>(job.frames.size());
     const assets::CacheExtent extent =
         assets::cache_extent(cache_folder(job.folder), job.fingerprint, job.frames);
-    return extent.n_whole_frames == static_cast<int>(job.frames.size())
-           && extent.checkpoint_frame >= job.frames.back() && tables.reach(job.frames.back());
+    return extent.n_whole_frames == n_frames && extent.checkpoint_frame >= job.frames.back()
+           && companions.reach(job,
+                               n_frames - 1,
+                               assets::FrameCacheReader(cache_folder(job.folder)).surfaces());
 }
 
-/// Restores the last checkpoint where the frames and rows up to it are whole; returns the index of the frame to
+/// Of bodies made of domains, then of colliders, then of bodies made of points.
+std::vector<assets::CachedSurface> surfaces_of(const SimulateJob& job,
+                                               const sim::Simulation& simulation) {
+    std::vector<assets::CachedSurface> surfaces = simulation.surfaces();
+    for (const sim::PointCloud& cloud : simulation.point_clouds())
+        surfaces.push_back(sim::cached_surface(cloud, job.scene.bodies.at(cloud.body)));
+    return surfaces;
+}
+
+/// The same surfaces now; writes those around points for other programs too.
+std::vector<assets::SurfaceFrame> surfaces_at(const SimulateJob& job,
+                                              int frame,
+                                              const sim::Simulation& simulation,
+                                              const VdbFiles& vdbs) {
+    std::vector<assets::SurfaceFrame> surfaces = simulation.deformed_surfaces();
+    for (const sim::PointCloud& cloud : simulation.point_clouds()) {
+        const auto surface = assets::point_surface(cloud.positions, cloud.spacing);
+        vdbs.write(cloud.name, frame, surface.vdb);
+        surfaces.push_back(sim::surface_frame(cloud, job.scene.bodies.at(cloud.body), surface));
+    }
+    return surfaces;
+}
+
+/// Restores the last checkpoint where the frames and all beside them up to it are whole; returns the index of the frame to
 /// compute next, 0 to begin at the beginning.
 int resume(const SimulateJob& job,
            const assets::FrameCacheWriter& cache,
-           const SimulationTables& tables,
+           const Companions& companions,
+           const std::vector<assets::CachedSurface>& surfaces,
            sim::Simulation& simulation) {
     const auto checkpoint = cache.read_checkpoint();
     if (!checkpoint)
         return 0;
     const int index = checkpoint->first - job.frames.front();
-    if (index < 0 || index >= cache.n_whole_frames() || !tables.reach(checkpoint->first))
+    if (index < 0 || index >= cache.n_whole_frames() || !companions.reach(job, index, surfaces))
         return 0;
     simulation.restore(checkpoint->second);
     return index + 1;
 }
 
-/// Everything about a frame reaches the disk in an order that a resume can rely on: a frame's file implies its rows,
-/// a checkpoint its frame.
+/// Everything about a frame reaches the disk in an order that a resume can rely on: a frame's file implies its rows
+/// and its OpenVDB files, a checkpoint its frame.
 void compute_frame(const SimulateJob& job,
                    int index,
                    sim::Simulation& simulation,
-                   const SimulationTables& tables,
+                   const Companions& companions,
                    assets::FrameCacheWriter& cache,
                    Progress& progress) {
     const int number = job.frames[static_cast<std::size_t>(index)];
@@ -66,9 +120,9 @@ void compute_frame(const SimulateJob& job,
                                  failures.size(),
                                  failures.front()));
 
-    tables.append(frame_rows(
+    companions.tables.append(frame_rows(
         number, time, simulation.stats(), simulation.probes(), simulation.pins(), seconds));
-    cache.write({number, time, simulation.deformed_surfaces()});
+    cache.write({number, time, surfaces_at(job, number, simulation, companions.vdbs)});
     cache.write_checkpoint(number, simulation.checkpoint());
 }
 
@@ -80,9 +134,9 @@ std::filesystem::path cache_folder(const std::filesystem::path& folder) {
 
 void simulate(const SimulateJob& job, Progress& progress) {
     check_job(job);
-    const SimulationTables tables(job.folder);
+    const Companions companions(job.folder);
     const auto n_frames = static_cast<int>(job.frames.size());
-    if (!job.overwrite && is_complete(job, tables)) {
+    if (!job.overwrite && is_complete(job, companions)) {
         progress.say(fmt::format("sim: all {} frames are in {} already",
                                  n_frames,
                                  cache_folder(job.folder).string()));
@@ -92,18 +146,16 @@ void simulate(const SimulateJob& job, Progress& progress) {
     sim::Simulation simulation(job.scene, 1 / job.fps);
     for (const std::string& note : simulation.notes())
         progress.say("note: " + note);
-    assets::FrameCacheWriter cache(cache_folder(job.folder),
-                                   job.fingerprint,
-                                   job.frames,
-                                   simulation.surfaces(),
-                                   job.overwrite);
-    const int first = resume(job, cache, tables, simulation);
-    tables.cut_after(job.frames.front() + first - 1);
+    const auto surfaces = surfaces_of(job, simulation);
+    assets::FrameCacheWriter cache(
+        cache_folder(job.folder), job.fingerprint, job.frames, surfaces, job.overwrite);
+    const int first = resume(job, cache, companions, surfaces, simulation);
+    companions.cut_after(job.frames.front() + first - 1);
 
     progress.start("sim", n_frames, first);
     for (int i = first; i < n_frames; ++i) {
         stop_if_interrupted();
-        compute_frame(job, i, simulation, tables, cache, progress);
+        compute_frame(job, i, simulation, companions, cache, progress);
         progress.advance(fmt::format("frame {}", job.frames[static_cast<std::size_t>(i)]));
     }
     progress.finish();

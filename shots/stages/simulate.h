@@ -29,6 +29,7 @@ std::filesystem::path cache_folder(const std::filesystem::path& folder);
 ///   stats.csv   steps, iterations, energies, momenta, mass, smallest J, wall-clock seconds
 ///   probes.csv  positions; mean stretch and volume of regions
 ///   pins.csv    what holds the body: forces and moments
+/// and, per frame and body made of points, its surface as an OpenVDB level set: vdb/BODY.####.vdb.
 /// Interrupted and resumed, all files end up the same bytes as in one go, but for the column "seconds".
 ///
 /// Throws Error(Input) where the cache belongs to another fingerprint (nothing is touched then), Error(Interrupted)

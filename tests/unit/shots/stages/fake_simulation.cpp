@@ -92,6 +92,21 @@ std::vector<assets::SurfaceFrame> Simulation::deformed_surfaces() const {
     return {surface};
 }
 
+std::vector<PointCloud> Simulation::point_clouds() const {
+    std::vector<PointCloud> clouds;
+    for (std::size_t body = 0; body < impl_->scene.bodies.size(); ++body) {
+        PointCloud cloud;
+        cloud.body = static_cast<int>(body);
+        cloud.name = impl_->scene.bodies[body].name;
+        cloud.spacing = 0.1;
+        cloud.positions = {{0, 0, 0}, {0.1 * impl_->history, 0, 0}, {0.05, 0.08, 0}};
+        cloud.region = {0, 1, 1};
+        cloud.stretch = {1, 1.5f, 1};
+        clouds.push_back(cloud);
+    }
+    return clouds;
+}
+
 std::vector<std::byte> Simulation::checkpoint() const {
     const double values[] = {impl_->time, impl_->history};
     std::vector<std::byte> state(sizeof values);

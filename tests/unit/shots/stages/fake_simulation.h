@@ -1,4 +1,5 @@
 // Stands in for sim::Simulation where only what surrounds it is tested: a number that grows with time, fast and exact.
+// Every body of its scene is made of three points.
 #pragma once
 
 namespace tests {

@@ -6,6 +6,7 @@
 #include "tests/unit/shots/stages/fake_simulation.h"
 
 #include <catch2/catch.hpp>
+#include <openvdb/openvdb.h>
 
 #include <limits>
 #include <sstream>
@@ -26,6 +27,21 @@ SimulateJob make_job(const std::filesystem::path& folder, int n_frames) {
         job.frames.push_back(1001 + i);
     job.folder = folder;
     job.fingerprint = {{"solver.dt", "0.001"}};
+    return job;
+}
+
+/// The same with two bodies made of points, each of a dark and a light region.
+SimulateJob make_snow_job(const std::filesystem::path& folder, int n_frames) {
+    SimulateJob job = make_job(folder, n_frames);
+    for (const char* name : {"snow", "ball"}) {
+        sim::Body body;
+        body.name = name;
+        body.regions.resize(2);
+        body.regions[0].color = Vec3f::Zero();
+        body.regions[1].color = Vec3f::Ones();
+        body.skins = {{"self", {}}};
+        job.scene.bodies.push_back(body);
+    }
     return job;
 }
 
@@ -174,6 +190,86 @@ TEST_CASE("whatever is lost or damaged is computed again, to the same bytes") {
         CHECK(run(job).advanced == 5);
     }
     CHECK(output(folder.path()) == whole);
+}
+
+TEST_CASE("bodies made of points reach the cache and files of OpenVDB") {
+    const TemporaryFolder folder;
+    const SimulateJob job = make_snow_job(folder.path(), 2);
+    run(job);
+    const assets::FrameCacheReader cache(cache_folder(job.folder));
+    REQUIRE(cache.surfaces().size() == 3);  // after what the simulation carries by itself
+    CHECK_FALSE(cache.surfaces()[0].varying);
+    CHECK(cache.surfaces()[1].varying);
+    CHECK(cache.surfaces()[1].body == "snow");
+    CHECK(cache.surfaces()[2].body == "ball");
+    CHECK(cache.surfaces()[2].skin == "self");
+
+    const assets::SurfaceFrame surface = cache.read(1002).surfaces[1];
+    REQUIRE_FALSE(surface.triangles.empty());
+    const auto& stretch = surface.attributes.at("stretch");
+    for (std::size_t v = 0; v < surface.positions.size(); ++v) {
+        const float gray = surface.region_color[v].x();
+        CHECK((gray >= 0 && gray <= 1.0001f));
+        CHECK((stretch[v] >= 0.9999f && stretch[v] <= 1.5001f));
+        const float region = surface.attributes.at("region")[v];
+        CHECK((region == 0 || region == 1));
+    }
+
+    for (const char* name :
+         {"snow.1001.vdb", "snow.1002.vdb", "ball.1001.vdb", "ball.1002.vdb"}) {
+        openvdb::initialize();
+        openvdb::io::File file((folder.path() / "vdb" / name).string());
+        file.open(false);  // all at once
+        CHECK(file.readGrid("surface")->activeVoxelCount() > 50);
+    }
+}
+
+TEST_CASE("files of OpenVDB that are lost, or left behind, are made good by a resume") {
+    const TemporaryFolder folder;
+    const SimulateJob job = make_snow_job(folder.path(), 4);
+    run(job);
+    const auto whole = output(folder.path());
+    const auto vdb = folder.path() / "vdb";
+    REQUIRE(whole.count("vdb/ball.1004.vdb") == 1);
+    CHECK(run(job).built == 0);
+
+    SECTION("one is lost") {
+        std::filesystem::remove(vdb / "snow.1002.vdb");
+        CHECK(run(job).advanced == 3);
+    }
+    SECTION("the last frame is lost and its file was being written") {
+        std::filesystem::remove(cache_folder(job.folder) / "frame.1004.bin");
+        std::filesystem::rename(vdb / "snow.1004.vdb", vdb / ".snow.1004.vdb.tmp.17");
+        CHECK(run(job).advanced == 3);
+    }
+    SECTION("the shot went on from a frame that diverged") {
+        std::filesystem::remove_all(folder.path() / "cache");
+        std::filesystem::remove_all(vdb);
+        divergence_time() = 0.25;
+        CHECK_THROWS_WITH(run(job), "the fake diverges");
+        divergence_time() = std::numeric_limits<double>::infinity();
+        CHECK(std::filesystem::exists(vdb / "ball.1002.vdb"));
+        CHECK_FALSE(std::filesystem::exists(vdb / "ball.1003.vdb"));
+        CHECK(run(job).restored == 1);
+    }
+    SECTION("a longer shot was overwritten") {
+        write_file(vdb / "other.1009.vdb", "old");
+        SimulateJob again = job;
+        again.overwrite = true;
+        CHECK(run(again).advanced == 3);
+    }
+    CHECK(output(folder.path()) == whole);
+}
+
+TEST_CASE("files in the folder of OpenVDB files that are not the shot's stay") {
+    const TemporaryFolder folder;
+    const std::vector<std::string> foreign{"notes.txt", "snow.vdb", ".vdb", "snow.x1.vdb"};
+    std::filesystem::create_directories(folder.path() / "vdb");
+    for (const std::string& name : foreign)
+        write_file(folder.path() / "vdb" / name, "mine");
+    run(make_snow_job(folder.path(), 1));
+    for (const std::string& name : foreign)
+        CHECK(read_file(folder.path() / "vdb" / name) == "mine");
 }
 
 TEST_CASE("a simulation that diverges leaves the frames before, and does so again") {
