@@ -137,7 +137,8 @@ TEST_CASE("pieces apart stay apart, narrow gaps close") {
         return point_surface(joined(block(n), block(n, 0, {shift, 0, 0})), spacing);
     };
     CHECK(n_pieces(two_blocks(1.6)) == 2);
-    CHECK(n_pieces(two_blocks(2)) == 2);  // the middle, where the points' mean is, lies on voxels
+    CHECK(n_pieces(two_blocks(2))
+          == 2);  // the middle, where the points' mean is, lies on voxels
     CHECK(n_pieces(two_blocks(3)) == 2);
     CHECK(n_pieces(two_blocks(0.5)) == 1);
 }
