@@ -1,0 +1,154 @@
+// Experiments of [Z18], from the shot files that film them: what a body of several stiffnesses must show.
+#include "shots/shot_file.h"
+#include "sim/simulation.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace {
+
+/// Of the pulled and pressed shots, whose states hardly depend on the step: they follow their pins.
+const std::vector<std::string> coarse_steps = {"solver.dt=4 ms"};
+
+/// The shot file `name` by `method`, with overrides "key.path=value" on top.
+shots::Shot load(const std::string& name,
+                 const std::string& method,
+                 std::vector<std::string> overrides = {}) {
+    overrides.push_back("solver.method=" + method);
+    return shots::load_shot(SOURCE_ROOT "/shots/" + name + ".toml", overrides);
+}
+
+sim::ProbeRow probe(const sim::Simulation& simulation, const std::string& name) {
+    for (const sim::ProbeRow& row : simulation.probes())
+        if (row.name == name)
+            return row;
+    FAIL("no probe " << name);
+    return {};
+}
+
+/// Mean stretch of each region that the shot probes, at `frame`.
+std::map<std::string, double> stretches(const shots::Shot& shot, int frame) {
+    sim::Simulation simulation(shot.scene, 1 / shot.fps);
+    simulation.advance_to(shot.time_of(frame));
+    std::map<std::string, double> of;
+    for (const sim::ProbeRow& row : simulation.probes())
+        if (row.is_region)
+            of[row.name] = row.stretch;
+    return of;
+}
+
+/// Height of the bar's tip where it hangs lowest in the first 12 frames, which hold its first swing.   [m]
+double lowest_tip(const std::string& method) {
+    const shots::Shot shot = load("bar", method);
+    sim::Simulation simulation(shot.scene, 1 / shot.fps);
+    double lowest = 0;
+    for (int frame = shot.frames.first; frame <= 12; ++frame) {
+        simulation.advance_to(shot.time_of(frame));
+        lowest = std::min(lowest, probe(simulation, "tip").position.z());
+    }
+    return lowest;
+}
+
+/// Domains that share a face with a domain of another region.
+int count_boundary_domains(const sim::Lattice& lattice) {
+    std::map<std::array<int, 3>, int> region_at;
+    for (int p = 0; p < lattice.n_domains(); ++p)
+        region_at[lattice.cell[p]] = lattice.region[p];
+    const auto differs = [&](std::array<int, 3> cell, int axis, int step, int region) {
+        cell[axis] += step;
+        const auto neighbour = region_at.find(cell);
+        return neighbour != region_at.end() && neighbour->second != region;
+    };
+    int count = 0;
+    for (const auto& [cell, region] : region_at) {
+        bool is_boundary = false;
+        for (int axis = 0; axis < 3; ++axis)
+            is_boundary |= differs(cell, axis, -1, region) || differs(cell, axis, 1, region);
+        count += is_boundary;
+    }
+    return count;
+}
+
+/// Share of the pressed cube's compression that its two soft layers take, measured on its axis.
+double soft_share(const sim::Simulation& simulation) {
+    const auto height = [&](const char* name) { return probe(simulation, name).position.y(); };
+    const double lower = 0.25 - (height("y450") - height("y200"));
+    const double upper = 0.25 - (height("y900") - height("y650"));
+    return (lower + upper) / (1.1 - height("y1100"));
+}
+
+}  // namespace
+
+TEST_CASE("bar [Z18 fig 13]: enriched hangs as low as fem, domains are stiffer") {
+    const double fem = lowest_tip("fem");
+    const double enriched = lowest_tip("enriched");
+    const double domains = lowest_tip("domains");
+    CAPTURE(fem, enriched, domains);
+    CHECK(fem < -0.05);  // it bends by more than a tenth of its length
+    CHECK(enriched == Approx(fem).epsilon(0.02));
+    CHECK(domains > enriched);
+    CHECK(domains > fem);
+}
+
+TEST_CASE("two_balls [Z18 fig 10]: softer parts stretch more, by enriched as by fem") {
+    const int frame = 36;  // the top is about to be let go
+    auto fem = stretches(load("two_balls", "fem", coarse_steps), frame);
+    auto enriched = stretches(load("two_balls", "enriched", coarse_steps), frame);
+    auto domains = stretches(load("two_balls", "domains", coarse_steps), frame);
+    for (const char* name : {"left", "rubber", "right"}) {
+        CAPTURE(name, fem[name], enriched[name], domains[name]);
+        CHECK(enriched[name] == Approx(fem[name]).epsilon(0.05));
+    }
+    for (auto* of : {&fem, &enriched}) {
+        CHECK((*of)["left"] > (*of)["rubber"]);
+        CHECK((*of)["rubber"] > (*of)["right"]);
+        CHECK((*of)["right"] > 1);
+    }
+    // The means differ little by method (below 2%), so the difference of the balls has to tell.
+    CHECK(domains["left"] - domains["right"] < fem["left"] - fem["right"]);
+    CHECK(domains["left"] - domains["right"] < enriched["left"] - enriched["right"]);
+}
+
+TEST_CASE("rows [Z18 fig 3]: rows inside one cell keep their own strain, but for domains") {
+    const int frame = 25;  // the pull ends
+    auto fem = stretches(load("rows", "fem"), frame);
+    auto enriched = stretches(load("rows", "enriched"), frame);
+    auto domains = stretches(load("rows", "domains"), frame);
+    const auto strain_ratio = [](std::map<std::string, double>& of) {
+        return (of["soft"] - 1) / (of["hard"] - 1);
+    };
+    CAPTURE(strain_ratio(fem), strain_ratio(enriched), strain_ratio(domains));
+    CHECK(enriched["soft"] == Approx(fem["soft"]).epsilon(0.05));
+    CHECK(enriched["hard"] == Approx(fem["hard"]).epsilon(0.05));
+    CHECK(enriched["soft"] / enriched["hard"]
+          == Approx(fem["soft"] / fem["hard"]).epsilon(0.05));
+    CHECK(strain_ratio(fem) > 5);
+    CHECK(strain_ratio(enriched) > 5);
+    CHECK(strain_ratio(domains) < 1.5);
+}
+
+TEST_CASE("layered_cube [Z18 fig 8]: the soft layers take their share of series springs") {
+    const shots::Shot shot = load("layered_cube", "enriched", coarse_steps);
+    sim::Simulation simulation(shot.scene, 1 / shot.fps);
+    CHECK(count_boundary_domains(simulation.lattice(0)) == 8 * 22 * 22);
+    simulation.advance_to(shot.time_of(25));  // pressed by a quarter of its height
+
+    // Layers in series carry one stress p, so a layer of height H shortens by p H / M, M = E (1-nu) / ((1+nu)(1-2nu))
+    // where its sides are held (oedometric), M = E where they are free. nu is one for all: its factor cancels.
+    const double soft = (0.25 + 0.25) / 100e3, hard = (0.2 + 0.2 + 0.2) / 10e6;  // H / E [m/Pa]
+    const double expected = soft / (soft + hard);                                // 0.988
+    CHECK(1.1 - probe(simulation, "y1100").position.y() == Approx(0.275).epsilon(1e-6));
+    CHECK(soft_share(simulation) == Approx(expected).epsilon(0.01));
+
+    // Springs know nothing of what happens at interfaces: averaging there moves the share by a twentieth of a percent
+    // only, towards the hard layers.
+    const shots::Shot averaging = load("layered_cube", "domains", coarse_steps);
+    sim::Simulation averaged(averaging.scene, 1 / averaging.fps);
+    averaged.advance_to(averaging.time_of(25));
+    CHECK(soft_share(averaged) < soft_share(simulation));
+}
