@@ -29,12 +29,12 @@ double highest_frequency(const Lattice& lattice) {
     return 2 * std::sqrt(most) / lattice.edge;
 }
 
-Vec3 centre_of_mass(const Lattice& lattice) {
+Vec3 centre_of_mass(const std::vector<double>& masses, const std::vector<Vec3>& places) {
     Vec3 sum = Vec3::Zero();
     double mass = 0;
-    for (int c = 0; c < lattice.n_corners(); ++c) {
-        sum += lattice.corner_mass[c] * lattice.corner_rest[c];
-        mass += lattice.corner_mass[c];
+    for (std::size_t c = 0; c < masses.size(); ++c) {
+        sum += masses[c] * places[c];
+        mass += masses[c];
     }
     return sum / mass;
 }
@@ -48,10 +48,17 @@ AssembledBody::AssembledBody(const Body& body,
     : lattice(std::move(made)),
       begin(first_corner),
       end(first_corner + lattice.n_corners()),
+      method(method_of(solver, body)),
+      kernel(kernel_of(solver, body)),
       cell_size(solver.grid_ratio * lattice.edge),
-      highest_frequency(sim::highest_frequency(lattice)),
-      elasticity(lattice, body),
-      enrichment(lattice, solver.enrich, cell_size) {
+      highest_frequency(sim::highest_frequency(lattice)) {
+    if (method == Method::Mpm) {
+        points = seed_points(lattice, body);
+        end = begin + points->size();
+        return;
+    }
+    elasticity.emplace(lattice, body);
+    enrichment.emplace(lattice, solver.enrich, cell_size);
     for (const Skin& skin : body.skins)
         surfaces.emplace_back(lattice, body, skin);
 }
@@ -71,23 +78,10 @@ Assembly::Assembly(const Scene& scene) {
     for (int c = 0; c < n_corners(); ++c)
         force[c] += mass[c] * padded(gravity);
 
-    for (const Pin& pin : scene.pins) {
-        const int b = index_of(scene.bodies, pin.body);
-        AssembledPin assembled{select_corners(bodies[b].lattice, scene.bodies[b], pin.select)};
-        for (int& c : assembled.corners)
-            c += bodies[b].begin;
-        pins.push_back(std::move(assembled));
-    }
-    for (const Probe& probe : scene.probes) {
-        AssembledProbe assembled;
-        assembled.body = index_of(scene.bodies, probe.body);
-        if (const auto* region = std::get_if<std::string>(&probe.at))
-            assembled.region = index_of(scene.bodies[assembled.body].regions, *region);
-        else
-            assembled.point =
-                bind_points(bodies[assembled.body].lattice, {std::get<Vec3>(probe.at)})[0];
-        probes.push_back(assembled);
-    }
+    for (const Pin& pin : scene.pins)
+        add_pin(scene, pin);
+    for (const Probe& probe : scene.probes)
+        add_probe(scene, probe);
 }
 
 void Assembly::add_body(const Body& body, const SolverOptions& solver) {
@@ -95,9 +89,14 @@ void Assembly::add_body(const Body& body, const SolverOptions& solver) {
     bodies.emplace_back(body, make_lattice(body, &repairs), n_corners(), solver);
     for (const std::string& repair : repairs)
         notes.push_back("body \"" + body.name + "\": " + repair);
+    if (const auto& points = bodies.back().points)
+        add_points(body, *points);
+    else
+        add_corners(body, bodies.back().lattice);
+}
 
-    const Lattice& lattice = bodies.back().lattice;
-    const Vec3 centre = centre_of_mass(lattice);
+void Assembly::add_corners(const Body& body, const Lattice& lattice) {
+    const Vec3 centre = centre_of_mass(lattice.corner_mass, lattice.corner_rest);
     for (int c = 0; c < lattice.n_corners(); ++c) {
         const Vec3& X = lattice.corner_rest[c];
         rest.push_back(padded(X));
@@ -107,15 +106,57 @@ void Assembly::add_body(const Body& body, const SolverOptions& solver) {
     }
 }
 
+void Assembly::add_points(const Body& body, const MaterialPoints& points) {
+    const Vec3 centre = centre_of_mass(points.mass, points.rest);
+    for (int p = 0; p < points.size(); ++p) {
+        rest.push_back(padded(points.rest[p]));
+        mass.push_back(padded(Vec3::Constant(points.mass[p])));
+        initial_velocity.push_back(
+            padded(body.velocity + body.spin.cross(points.rest[p] - centre)));
+        outside.push_back(-points.spacing / 2);  // a point stands for a little cube
+    }
+}
+
 void Assembly::add_force(const Scene& scene, const DeadLoad& load) {
     const int b = index_of(scene.bodies, load.body);
     const Lattice& lattice = bodies[b].lattice;
     const std::vector<int> corners = select_corners(lattice, scene.bodies[b], load.select);
+    if (bodies[b].points) {
+        const std::vector<double> share = point_shares(lattice, corners);
+        for (std::size_t p = 0; p < share.size(); ++p)
+            force[bodies[b].begin + p] += padded(load.total * share[p]);
+        return;
+    }
     double volume = 0;
     for (const int c : corners)
         volume += lattice.corner_volume[c];
     for (const int c : corners)
         force[bodies[b].begin + c] += padded(load.total * (lattice.corner_volume[c] / volume));
+}
+
+void Assembly::add_pin(const Scene& scene, const Pin& pin) {
+    const int b = index_of(scene.bodies, pin.body);
+    const AssembledBody& body = bodies[b];
+    AssembledPin assembled;
+    std::vector<int> corners = select_corners(body.lattice, scene.bodies[b], pin.select);
+    std::vector<int>& held = body.points ? assembled.points : assembled.corners;
+    held = body.points ? points_at(body.lattice, corners) : std::move(corners);
+    for (int& c : held)
+        c += body.begin;
+    pins.push_back(std::move(assembled));
+}
+
+void Assembly::add_probe(const Scene& scene, const Probe& probe) {
+    AssembledProbe assembled;
+    assembled.body = index_of(scene.bodies, probe.body);
+    const AssembledBody& body = bodies[assembled.body];
+    if (const auto* region = std::get_if<std::string>(&probe.at))
+        assembled.region = index_of(scene.bodies[assembled.body].regions, *region);
+    else if (body.points)
+        assembled.near = near_points(*body.points, std::get<Vec3>(probe.at));
+    else
+        assembled.point = bind_points(body.lattice, {std::get<Vec3>(probe.at)})[0];
+    probes.push_back(assembled);
 }
 
 double Assembly::finest_edge() const {
@@ -137,6 +178,17 @@ std::vector<ContactCorner> Assembly::contact_corners() const {
     std::vector<ContactCorner> result;
     for (const AssembledBody& body : bodies) {
         const Lattice& lattice = body.lattice;
+        const int index = static_cast<int>(&body - bodies.data());
+        if (const auto& points = body.points) {  // any may come to the surface
+            for (int p = 0; p < points->size(); ++p)
+                result.push_back({body.begin + p,
+                                  index,
+                                  outside[body.begin + p],
+                                  contact_stiffness * young_modulus(lattice, p) * lattice.edge,
+                                  points->mass[p],
+                                  lattice.edge});
+            continue;
+        }
         std::vector<int> n_domains(lattice.n_corners(), 0);
         std::vector<double> modulus(lattice.n_corners(), 0);
         for (int p = 0; p < lattice.n_domains(); ++p)
@@ -147,7 +199,7 @@ std::vector<ContactCorner> Assembly::contact_corners() const {
         for (int c = 0; c < lattice.n_corners(); ++c)
             if (n_domains[c] < 8)
                 result.push_back({body.begin + c,
-                                  static_cast<int>(&body - bodies.data()),
+                                  index,
                                   lattice.corner_outside[c],
                                   contact_stiffness * modulus[c] * lattice.edge,
                                   lattice.corner_mass[c],

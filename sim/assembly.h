@@ -8,22 +8,28 @@
 #include "sim/embedding/embedding.h"
 #include "sim/enrichment/enrichment.h"
 #include "sim/lattice/lattice.h"
+#include "sim/point_bodies.h"
+#include "sim/points/material_points.h"
 #include "sim/scene.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace sim {
 
-/// A body cut into domains; its corners are [begin, end) of the scene's.
+/// A body cut into domains, or made of points; [begin, end) of the scene's corners are its corners or points.
 struct AssembledBody {
     Lattice lattice;
     int begin = 0, end = 0;
+    Method method;
+    Kernel kernel;
     double cell_size = 0;          // of its background grid [m]
     double highest_frequency = 0;  // bound of what its corners swing with at rest [rad/s]
-    Elasticity elasticity;
-    Enrichment enrichment;
-    std::vector<EmbeddedSurface> surfaces;
+    std::optional<Elasticity> elasticity;   // of domains
+    std::optional<Enrichment> enrichment;   // of domains
+    std::optional<MaterialPoints> points;   // in place of both
+    std::vector<EmbeddedSurface> surfaces;  // none of points
 
     AssembledBody(const Body& body,
                   Lattice made,
@@ -31,16 +37,17 @@ struct AssembledBody {
                   const SolverOptions& solver);
 };
 
-/// A pin's corners in the scene's field.
+/// A pin's corners in the scene's field; of a body of points, the points of the domains at these corners.
 struct AssembledPin {
-    std::vector<int> corners;
+    std::vector<int> corners, points;
 };
 
 /// A probe bound to its body.
 struct AssembledProbe {
     int body = 0;
-    Binding point;    // of a material point
-    int region = -1;  // else the region's index
+    Binding point;                // of a material point of domains
+    int region = -1;              // else the region's index
+    std::vector<NearPoint> near;  // of a material point in a body of points
 };
 
 struct Assembly {
@@ -70,7 +77,11 @@ struct Assembly {
 
   private:
     void add_body(const Body& body, const SolverOptions& solver);
+    void add_corners(const Body& body, const Lattice& lattice);
+    void add_points(const Body& body, const MaterialPoints& points);
     void add_force(const Scene& scene, const DeadLoad& load);
+    void add_pin(const Scene& scene, const Pin& pin);
+    void add_probe(const Scene& scene, const Probe& probe);
 };
 
 /// Index of a name in a list of things with names; the shot file has been checked, so it is there.

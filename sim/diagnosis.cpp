@@ -15,12 +15,21 @@ struct Worst {
 };
 
 /// The most compressed domain of all bodies.
-Worst most_compressed(Assembly& assembly, const Field& x) {
+Worst most_compressed(Assembly& assembly, const Stepper& stepper, const Field& x) {
     Worst worst;
     worst.J = std::numeric_limits<double>::infinity();
     for (std::size_t b = 0; b < assembly.bodies.size(); ++b) {
         AssembledBody& body = assembly.bodies[b];
-        const auto found = body.elasticity.smallest_J(&x[body.begin]);
+        if (body.points) {
+            const auto found = stepper.points(static_cast<int>(b))->smallest_trial_J();
+            if (found.point >= 0 && found.J < worst.J)
+                worst = {static_cast<int>(b),
+                         found.point,
+                         found.J,
+                         unpadded(x[body.begin + found.point])};
+            continue;
+        }
+        const auto found = body.elasticity->smallest_J(&x[body.begin]);
         if (found.domain < 0 || !(found.J < worst.J))
             continue;
         Vec3 place = Vec3::Zero();
@@ -63,12 +72,13 @@ std::string cause(const Scene& scene, const NewtonSummary& summary, double dt, d
 
 assets::Error diagnose(const Scene& scene,
                        Assembly& assembly,
+                       const Stepper& stepper,
                        const State& state,
                        const Field& trial,
                        double dt,
                        const NewtonSummary& summary) {
     const Worst worst =
-        most_compressed(assembly, trial.size() == state.x.size() ? trial : state.x);
+        most_compressed(assembly, stepper, trial.size() == state.x.size() ? trial : state.x);
     const Body& body = scene.bodies[worst.body];
     const Region& region =
         body.regions[assembly.bodies[worst.body].lattice.region[worst.domain]];

@@ -10,6 +10,7 @@ namespace sim {
 /// solver gave up at; `dt` = 0 for an equilibrium.
 assets::Error diagnose(const Scene& scene,
                        Assembly& assembly,
+                       const Stepper& stepper,
                        const State& state,
                        const Field& trial,
                        double dt,

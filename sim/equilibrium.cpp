@@ -28,7 +28,7 @@ void Stepper::equilibrium(State& state, double time) {
             continue;
         }
         if (++halvings > most_halvings || length == 0)
-            throw diagnose(scene_, assembly_, state, potential_.positions(), 0, summary);
+            throw diagnose(scene_, assembly_, *this, state, potential_.positions(), 0, summary);
         length /= 2;
     }
     state.time = time;
@@ -63,7 +63,7 @@ bool Stepper::try_equilibrium(State& state,
     options.first_forcing = 0.1;
     options.max_iterations = 200;
     if (!surfaces_.empty())
-        surfaces_.begin_step(state.x, state.x, state.top_speed, 0);
+        surfaces_.begin_step(state.x, state.x, surface_speeds(state), 0);
     const bool solved = minimize_with_contact(options, contact_passes);
     summary = summary_;
     if (!solved)

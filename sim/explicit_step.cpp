@@ -25,8 +25,11 @@ double Stepper::explicit_limit(const State& state) const {
         double speed_squared = 0;
         for (int c = body.begin; c < body.end; ++c)
             speed_squared = std::max(speed_squared, dot(state.v[c], state.v[c]));
+        const PointEnergy* points = points_[&body - assembly_.bodies.data()].get();
+        const double highest =
+            points ? points->highest_frequency(body.kernel) : body.highest_frequency;
         limit = std::min({limit,
-                          safety * 2 / body.highest_frequency,
+                          safety * 2 / highest,
                           most_cells * body.cell_size / std::sqrt(speed_squared)});
     }
     return limit;
@@ -57,10 +60,12 @@ bool Stepper::try_explicit(State& state, double dt) {
 
     // Kick by half of the forces at the start, and drift.
     Field& buffer = scratch_.trial;
-    const Field& force = map_.applied_transposed(gradient_, buffer);
+    const Field& force = map_.applied_transposed(gradient_, start_gradient_);
+    add_start_gradient(start_gradient_);
     for (int i = 0; i < n_dofs; ++i)
         q_[i] += step.is_free[i]
                  * (step.q_tilde[i] - (dt_hat_ * inverse_mass_[i] / damped) * force[i]);
+    q_moved_ = q_;
     moved_ = map_.applied(q_, moved_);
     exchange_contact(state, dt);
     summary_ = {};
@@ -72,9 +77,11 @@ bool Stepper::try_explicit(State& state, double dt) {
     drift(dt);
 
     // The forces there. The motion must not be faster than the step can follow.
-    if (!std::isfinite(potential_.elastic_gradient(x_end_, end_gradient_)))
+    grid_gradient_.assign(n_dofs, Vec3p{});
+    if (!std::isfinite(potential_.elastic_gradient(x_end_, end_gradient_)
+                       + add_grid_gradient(q_moved_, dt, grid_gradient_)))
         return false;
-    if (seen_frequency(state) * dt > most_excited) {
+    if (std::max(seen_frequency(state), seen_frequency_of_points()) * dt > most_excited) {
         summary_.termination = Termination::Unstable;
         return false;
     }
@@ -87,13 +94,19 @@ bool Stepper::try_explicit(State& state, double dt) {
     Field& dq = q_;
     const Field& impulse = map_.applied_transposed(kick, buffer);
     for (int i = 0; i < n_dofs; ++i)
-        dq[i] = inverse_mass_[i] * impulse[i] * step.is_free[i];
+        dq[i] = inverse_mass_[i] * (impulse[i] - dt_hat_ * grid_gradient_[i]) * step.is_free[i];
     const Field& dv = map_.applied(dq, corner_);
     set_explicit_reactions(state, dt);
     for (int c = 0; c < n_corners; ++c) {
         const Vec3p is_free = prescribed_.is_free[c];
         state.v[c] += is_free * ((state.v[c] + dv[c]) / damped - state.v[c]);
     }
+    for (int i = 0; i < n_dofs; ++i)
+        q_moved_[i] += step.is_free[i] * ((q_moved_[i] + dq[i]) / damped - q_moved_[i]);
+    commit_affine(state, q_moved_);
+    for (std::size_t b = 0; b < points_.size(); ++b)
+        if (points_[b])
+            points_[b]->accept(state.points[b]);
     std::swap(gradient_, end_gradient_);
     return true;
 }
@@ -105,7 +118,7 @@ void Stepper::restrain_by_contact(const State& state, double dt) {
     if (!surfaces_.empty()) {
         for (std::size_t c = 0; c < moved_.size(); ++c)
             corner_[c] = state.x[c] + dt * moved_[c];
-        surfaces_.begin_step(state.x, corner_, state.top_speed, dt);
+        surfaces_.begin_step(state.x, corner_, surface_speeds(state), dt);
         surfaces_.restrain(state.x, assembly_.mass, dt, change);
     }
     colliders_.restrain(state.x, dt, change);
@@ -121,6 +134,14 @@ void Stepper::set_explicit_reactions(const State& state, double dt) {
         reaction_[c] = (inertia - assembly_.force[c] + gradient)
                        * (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]);
     }
+    const auto& step = potential_.step();
+    const double damped = 1 + scene_.solver.damping * dt_hat_;
+    set_node_reactions([&](int i) {
+        const Vec3p change = damped * damped * q_moved_[i] - q_n_[i];
+        const Vec3p half_kick = damped * step.q_tilde[i] - q_n_[i];  // of external forces
+        return dof_mass_[i] * (change - 2 * half_kick) / dt
+               + 0.5 * (start_gradient_[i] + grid_gradient_[i]);
+    });
 }
 
 }  // namespace sim

@@ -64,12 +64,13 @@ bool Stepper::solve_step(const State& state, double dt, Scheme scheme) {
     for (std::size_t c = 0; c < state.x.size(); ++c)
         x_end_[c] = potential_.step().x_n[c] + dt_hat_ * u[c];
     if (!surfaces_.empty())
-        surfaces_.begin_step(state.x, x_end_, state.top_speed, dt);
+        surfaces_.begin_step(state.x, x_end_, surface_speeds(state), dt);
     if (!minimize_with_contact(options,
                                scene_.solver.steps == Steps::SemiImplicit ? 1 : contact_passes))
         return false;
     moved_.resize(state.x.size());
     map_.apply(q_, moved_);
+    q_moved_ = q_;
     balance_momentum();
     return true;
 }
@@ -105,8 +106,12 @@ bool Stepper::start_from_rest() {
 
 void Stepper::end_implicit(State& state, double dt) {
     set_reactions();
-    // What inner forces gave, before contact on the grid changes what moves the corners.
     const auto& step = potential_.step();
+    set_node_reactions([&](int i) {
+        return (step.mass[i] * (q_[i] - step.q_tilde[i]) + potential_.inner_part()[i])
+               / dt_hat_;
+    });
+    // What inner forces gave, before contact on the grid changes what moves the corners.
     Field& inner = q_;
     for (int i = 0; i < map_.n_dofs(); ++i)
         inner[i] = (q_[i] - step.q_tilde[i]) * step.is_free[i];
@@ -114,6 +119,10 @@ void Stepper::end_implicit(State& state, double dt) {
     exchange_contact(state, dt_hat_);
     drift(dt_hat_);
     commit(state, dt);
+    commit_affine(state, q_moved_);
+    for (std::size_t b = 0; b < points_.size(); ++b)
+        if (points_[b])
+            points_[b]->advance(q_moved_, dt_hat_, state.points[b]);
 }
 
 void Stepper::guess(const State& state) {
@@ -132,15 +141,23 @@ void Stepper::guess(const State& state) {
         q_[i] += step.is_free[i] * (step.q_tilde[i] + inverse_mass_[i] * impulse[i]);
 }
 
+bool Stepper::is_held(const AssembledBody& body) const {
+    const int index = static_cast<int>(&body - assembly_.bodies.data());
+    return std::any_of(prescribed_.corners.begin(),
+                       prescribed_.corners.end(),
+                       [&](int c) { return c >= body.begin && c < body.end; })
+           || std::any_of(
+               pinned_nodes_.begin(), pinned_nodes_.end(), [&](const PinnedNode& node) {
+                   return map_.dof_body()[node.dof] == index;
+               });
+}
+
 void Stepper::balance_momentum() {
     // The solve is inexact. The momentum of a body that nothing holds is known without it: elastic forces sum to zero,
     // and what colliders give is in the gradient.
     const double damped = 1 + scene_.solver.damping * dt_hat_;
     for (const AssembledBody& body : assembly_.bodies) {
-        const bool held = std::any_of(prescribed_.corners.begin(),
-                                      prescribed_.corners.end(),
-                                      [&](int c) { return c >= body.begin && c < body.end; });
-        if (held)
+        if (is_held(body))
             continue;
         Vec3p missing{};
         double mass = 0;

@@ -25,11 +25,22 @@ void IncrementalPotential::update_positions(const Field& q) {
     });
 }
 
+/// act(elasticity, first corner) for bodies of domains; zero in `sums` for points.
+template <class Act>
+void IncrementalPotential::for_elastic(Field& sums, const Act& act) {
+    for (const ElasticBody& body : bodies_)
+        if (body.elasticity != nullptr)
+            act(*body.elasticity, body.begin);
+        else
+            std::fill(sums.begin() + body.begin, sums.begin() + body.end, Vec3p{});
+}
+
 double IncrementalPotential::elastic_gradient(const Field& x, Field& gradient) {
     gradient.resize(x.size());
     double energy = 0;
-    for (const ElasticBody& body : bodies_)
-        energy += body.elasticity->energy_and_gradient(&x[body.begin], &gradient[body.begin]);
+    for_elastic(gradient, [&](Elasticity& elasticity, int begin) {
+        energy += elasticity.energy_and_gradient(&x[begin], &gradient[begin]);
+    });
     return energy;
 }
 
@@ -52,6 +63,11 @@ double IncrementalPotential::value_and_gradient(const Field& q, Field& gradient)
     inner_part_.resize(n);
     gradient.resize(n);
     const Field& force = map_.applied_transposed(corner_gradient_, inner_part_);
+    for (GridEnergy* grid :
+         grids_)  // points are never free: T is no identity, `force` is inner_part_
+        value += grid->add_gradient(q, step_.dt, inner_part_);
+    if (!std::isfinite(value))
+        return value;
     value += sum_chunks(n, chunk, [&](int begin, int end) {
         Vec3p sum{};
         for (int i = begin; i < end; ++i) {
@@ -72,10 +88,10 @@ void IncrementalPotential::linearize(const Field& q, bool project) {
     corner_diagonal_.resize(x_.size());
     corner_product_.resize(x_.size());
     double largest_coordinate = 0;
-    for (const ElasticBody& body : bodies_) {
-        body.elasticity->linearize(&x_[body.begin], project);
-        body.elasticity->diagonal(&corner_diagonal_[body.begin]);
-    }
+    for_elastic(corner_diagonal_, [&](Elasticity& elasticity, int begin) {
+        elasticity.linearize(&x_[begin], project);
+        elasticity.diagonal(&corner_diagonal_[begin]);
+    });
     for (const Vec3p& x : x_)
         for (int k = 0; k < 3; ++k)
             largest_coordinate = std::max(largest_coordinate, std::abs(x[k]));
@@ -83,6 +99,17 @@ void IncrementalPotential::linearize(const Field& q, bool project) {
         contact->linearize(x_);
         contact->add_diagonal(corner_diagonal_);
     }
+
+    grid_diagonal_.assign(n, Vec3p{});
+    double grid_length = 0;
+    for (GridEnergy* grid : grids_) {
+        grid->linearize(q, step_.dt, project);
+        grid->add_diagonal(grid_diagonal_);
+        grid_length = std::max(grid_length, grid->length());
+    }
+    if (!grids_.empty())
+        for (const Vec3p& velocity : q)
+            grid_length = std::max(grid_length, step_.dt * std::sqrt(dot(velocity, velocity)));
 
     // The diagonal of M + dt² Tᵀ K T, and what rounding of positions does to dt Tᵀ ∂Φ/∂x.
     inverse_diagonal_.resize(n);
@@ -92,25 +119,30 @@ void IncrementalPotential::linearize(const Field& q, bool project) {
         double sum = 0;
         for (int i = begin; i < end; ++i) {
             const Vec3p stiffness = inverse_diagonal_[i];
-            const Vec3p diagonal = step_.mass[i] + dt_squared * stiffness;
+            const Vec3p diagonal = step_.mass[i] + dt_squared * (stiffness + grid_diagonal_[i]);
             Vec3p inverse{};
             for (int k = 0; k < 3; ++k)
                 inverse[k] = step_.is_free[i][k] > 0 && diagonal[k] > 0 ? 1 / diagonal[k] : 0;
             inverse_diagonal_[i] = inverse;
-            sum += dot(stiffness * stiffness, inverse);
+            const Vec3p rounded =
+                largest_coordinate * stiffness + grid_length * grid_diagonal_[i];
+            sum += dot(rounded * rounded, inverse);
         }
         return sum;
     });
-    noise_ = rounding * largest_coordinate * step_.dt * std::sqrt(noise_squared);
+    noise_ = rounding * step_.dt * std::sqrt(noise_squared);
 }
 
 double IncrementalPotential::hessian_product(const Field& p, Field& product) {
     const Field& u = map_.applied(p, corner_diagonal_);
-    for (const ElasticBody& body : bodies_)
-        body.elasticity->product(&u[body.begin], &corner_product_[body.begin]);
+    for_elastic(corner_product_, [&](Elasticity& elasticity, int begin) {
+        elasticity.product(&u[begin], &corner_product_[begin]);
+    });
     for (const ContactEnergy* contact : contacts_)
         contact->add_product(u, corner_product_);
     const Field& Ku = map_.applied_transposed(corner_product_, product);
+    for (const GridEnergy* grid : grids_)
+        grid->add_product(p, product);
     const double dt_squared = step_.dt * step_.dt;
     return sum_chunks(static_cast<int>(p.size()), chunk, [&](int begin, int end) {
         Vec3p sum{};
@@ -126,6 +158,8 @@ double IncrementalPotential::value_noise() const {
     double scale = 0;
     for (const ElasticBody& body : bodies_)
         scale += body.energy_scale;
+    for (const GridEnergy* grid : grids_)
+        scale += grid->scale();
     return std::numeric_limits<double>::epsilon() * scale;
 }
 

@@ -4,6 +4,7 @@
 #include "sim/contact/contact_energy.h"
 #include "sim/elasticity/elasticity.h"
 #include "sim/grid/corner_map.h"
+#include "sim/grid/grid_energy.h"
 #include "sim/solver/potential.h"
 
 #include <vector>
@@ -14,12 +15,12 @@ namespace sim {
 ///
 ///   W(q) = 1/2 (q - q~)ᵀ M (q - q~) + Φ(x_n + dt T q),      A = M + dt² Tᵀ K T
 ///
-/// with Φ = elastic + hourglass + contact energies, M lumped on q, and q~ the velocity after transfer, external forces
+/// with Φ = elastic + hourglass + contact energies of corners, and energies of the grid's motion, M lumped on q, and q~ the velocity after transfer, external forces
 /// and damping. Statics is the same with M = 0, dt = 1 (q is then a displacement) and the external forces in Φ:
 /// W(u) = Φ(x_n + T u) - f·(x_n + T u).
 class IncrementalPotential : public Potential {
   public:
-    /// The bodies' energies and their ranges in the field of all corners.
+    /// The bodies' energies of corners, null for bodies of points, and their ranges in the field of all corners.
     struct ElasticBody {
         Elasticity* elasticity = nullptr;
         int begin = 0, end = 0;
@@ -29,8 +30,12 @@ class IncrementalPotential : public Potential {
 
     IncrementalPotential(const CornerMap& map,
                          std::vector<ElasticBody> bodies,
-                         std::vector<ContactEnergy*> contacts)
-        : map_(map), bodies_(std::move(bodies)), contacts_(std::move(contacts)) {}
+                         std::vector<ContactEnergy*> contacts,
+                         std::vector<GridEnergy*> grids)
+        : map_(map),
+          bodies_(std::move(bodies)),
+          contacts_(std::move(contacts)),
+          grids_(std::move(grids)) {}
 
     /// What a step starts from. `mass`, `q_tilde` and `is_held` are indexed by q; `x_n` and `static_force` by corner
     /// (the latter empty in dynamics). is_free holds 1 in free components and 0 in prescribed ones.
@@ -41,7 +46,7 @@ class IncrementalPotential : public Potential {
 
     Step& step() { return step_; }
 
-    /// The bodies' energies at corners x, and their gradient (#C) [N].   [J]
+    /// The bodies' energies at corners x, and their gradient (#C) [N]; of bodies of points none.   [J]
     double elastic_gradient(const Field& x, Field& gradient);
 
     double value_and_gradient(const Field& q, Field& gradient) override;
@@ -62,15 +67,21 @@ class IncrementalPotential : public Potential {
     /// ∂Φ/∂x (#C) at the last q evaluated [N].
     const Field& corner_gradient() const { return corner_gradient_; }
 
+    /// dt Tᵀ ∂Φ/∂x (#dofs) there, energies of the grid included [N s].
+    const Field& inner_part() const { return inner_part_; }
+
   private:
     void update_positions(const Field& q);
+    template <class Act>
+    void for_elastic(Field& sums, const Act& act);
 
     const CornerMap& map_;
     std::vector<ElasticBody> bodies_;
     std::vector<ContactEnergy*> contacts_;
+    std::vector<GridEnergy*> grids_;
     Step step_;
     Field x_, corner_gradient_, corner_product_, corner_diagonal_, inner_part_,
-        inverse_diagonal_;
+        inverse_diagonal_, grid_diagonal_;
     double noise_ = 0;
 };
 

@@ -13,6 +13,10 @@ constexpr double time_rounding = 1e-9;  // [s], far below any step
 
 }  // namespace
 
+bool is_in_force(const Pin& pin, double time) {
+    return time <= pin.until - time_rounding;
+}
+
 Vec3 pinned_position(const Pin& pin, const Vec3& X, double time) {
     if (const auto* velocity = std::get_if<Pin::Velocity>(&pin.moves))
         return X + time * velocity->velocity;
@@ -39,7 +43,7 @@ void prescribe(const Scene& scene,
     corners.clear();
     for (std::size_t k = 0; k < scene.pins.size(); ++k) {
         const Pin& pin = scene.pins[k];
-        if (time_begin > pin.until - time_rounding)
+        if (!is_in_force(pin, time_begin))
             continue;
         for (const int c : assembly.pins[k].corners) {
             const Vec3 to =

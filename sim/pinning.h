@@ -16,6 +16,9 @@ struct Prescribed {
     std::vector<int> corners;  // those with a prescribed component, in order
 };
 
+/// Whether a pin has not been released by `time`.
+bool is_in_force(const Pin& pin, double time);
+
 /// Where the pin moves a corner to by `time`: X, X + v t, or X turned about the axis by rate·t.   [m]
 Vec3 pinned_position(const Pin& pin, const Vec3& X, double time);
 

@@ -34,14 +34,40 @@ ProbeRow region_row(const AssembledBody& body, int region, const std::vector<Vec
     return row;
 }
 
+ProbeRow region_row(const AssembledBody& body,
+                    int region,
+                    const PointState& state,
+                    const Vec3p* x) {
+    ProbeRow row;
+    row.is_region = true;
+    double rest_volume = 0;
+    const MaterialPoints& points = *body.points;
+    for (int p = 0; p < points.size(); ++p) {
+        if (points.region[p] != region)
+            continue;
+        const Eigen::Map<const Mat3> F(state.F[p].m);
+        const double deformed = points.volume[p] * F.determinant() * state.J_plastic[p];
+        row.position += deformed * unpadded(x[p]);
+        row.stretch += points.volume[p] * Eigen::JacobiSVD<Mat3>(F).singularValues()[0];
+        row.volume += deformed;
+        rest_volume += points.volume[p];
+    }
+    if (rest_volume > 0) {
+        row.position /= row.volume;
+        row.stretch /= rest_volume;
+    }
+    return row;
+}
+
 /// The point about which the moment of a pin is taken.
 Vec3 moment_point(const Pin& pin, const AssembledPin& assembled, const Field& x) {
     if (const auto* spin = std::get_if<Pin::Spin>(&pin.moves))
         return spin->point;
     Vec3 sum = Vec3::Zero();
-    for (const int c : assembled.corners)
-        sum += unpadded(x[c]);
-    return sum / static_cast<double>(assembled.corners.size());
+    for (const auto* held : {&assembled.corners, &assembled.points})
+        for (const int c : *held)
+            sum += unpadded(x[c]);
+    return sum / static_cast<double>(assembled.corners.size() + assembled.points.size());
 }
 
 }  // namespace
@@ -67,17 +93,29 @@ Stats stats_of(Assembly& assembly, const Stepper& stepper, const State& state) {
         stats.linear_momentum += momentum;
         stats.angular_momentum += x.cross(momentum);
     }
+    for (std::size_t c = 0; c < state.affine.size(); ++c)  // Σ_i w_i (x_i - x) × v_i
+        for (int j = 0; j < 3; ++j)
+            stats.angular_momentum +=
+                assembly.mass[c][0] * Vec3::Unit(j).cross(unpadded(state.affine[c].column[j]));
     stats.collider_penetration = stepper.colliders().deepest_penetration(state.x, state.time);
     const SurfaceContact::Report contact = stepper.surfaces().report(state.x);
     stats.penetration = contact.penetration;
     stats.gap = contact.gap;
     Field gradient(state.x.size());
     stats.smallest_J = std::numeric_limits<double>::infinity();
-    for (AssembledBody& body : assembly.bodies) {
+    for (std::size_t b = 0; b < assembly.bodies.size(); ++b) {
+        AssembledBody& body = assembly.bodies[b];
+        if (body.points) {
+            stats.elastic_energy +=
+                stepper.points(static_cast<int>(b))->energy(state.points[b]);
+            for (const Matrix3<double>& F : state.points[b].F)
+                stats.smallest_J = std::min(stats.smallest_J, determinant(F));
+            continue;
+        }
         stats.elastic_energy +=
-            body.elasticity.energy_and_gradient(&state.x[body.begin], &gradient[body.begin]);
+            body.elasticity->energy_and_gradient(&state.x[body.begin], &gradient[body.begin]);
         stats.smallest_J =
-            std::min(stats.smallest_J, body.elasticity.smallest_J(&state.x[body.begin]).J);
+            std::min(stats.smallest_J, body.elasticity->smallest_J(&state.x[body.begin]).J);
     }
     return stats;
 }
@@ -91,7 +129,12 @@ std::vector<ProbeRow> probes_of(const Scene& scene,
         const AssembledBody& body = assembly.bodies[probe.body];
         const std::vector<Vec3> corners = corners_of(body, state.x);
         ProbeRow row;
-        if (probe.region >= 0)
+        if (body.points && probe.region >= 0)
+            row =
+                region_row(body, probe.region, state.points[probe.body], &state.x[body.begin]);
+        else if (body.points)
+            row.position = carried(probe.near, state.points[probe.body], &state.x[body.begin]);
+        else if (probe.region >= 0)
             row = region_row(body, probe.region, corners);
         else
             row.position = carried(body.lattice, probe.point, corners);
@@ -117,6 +160,11 @@ std::vector<PinRow> pins_of(const Scene& scene,
             row.force += force;
             row.moment += (unpadded(state.x[c]) - about).cross(force);
         }
+        for (const Stepper::NodeReaction& node : stepper.node_reactions())
+            if (node.pin == static_cast<int>(k)) {
+                row.force += node.force;
+                row.moment += (node.at - about).cross(node.force);
+            }
         rows.push_back(row);
     }
     return rows;

@@ -14,9 +14,17 @@
 
 namespace sim {
 
-enum class Method { Domains, Enriched, Fem };
+enum class Method { Mpm, Domains, Enriched, Fem };
+enum class Kernel { Linear, Quadratic, Cubic };
+enum class Transfer { Flip, Apic };
 enum class Steps { Explicit, SemiImplicit, Implicit, Bdf2, Static };
-enum class Model { NeoHookean, StableNeoHookean, FixedCorotated };
+enum class Model { NeoHookean, StableNeoHookean, FixedCorotated, Snow };
+
+/// What makes the fixed corotated law one of snow: with J_P the volume that was lost or won for good, moduli grow by
+/// exp(hardening (1 - J_P)), and stretches beyond 1 - compression_limit or 1 + stretch_limit stay. [SSC13 §5]
+struct SnowOptions {
+    double hardening = 10, compression_limit = 2.5e-2, stretch_limit = 7.5e-3;
+};
 
 /// A part of a body at rest. Geometric selectors are boolean functions of the rest position; MeshMaterial and
 /// Depth depend on the body's own surface.
@@ -72,6 +80,7 @@ struct Region {
     double young_modulus = 0;       // [Pa], > 0
     double poisson_ratio = 0;       // -1 < nu < 1/2
     double density = 0;             // [kg/m³], > 0
+    SnowOptions snow;               // of Model::Snow
     Vec3f color{0.8f, 0.8f, 0.8f};  // sRGB as typed in the shot file, 0..1
 };
 
@@ -84,11 +93,13 @@ struct Skin {
 struct Body {
     std::string name;
     assets::Source source;
-    double domain_size = 0;       // edge s of a domain [m]
-    Vec3 velocity{0, 0, 0};       // initial [m/s]
-    Vec3 spin{0, 0, 0};           // initial angular velocity about the centre of mass [rad/s]
-    std::vector<Region> regions;  // layers: later wins; the first selects all
-    std::vector<Skin> skins;      // at least one
+    double domain_size = 0;        // edge s of a domain [m]
+    Vec3 velocity{0, 0, 0};        // initial [m/s]
+    Vec3 spin{0, 0, 0};            // initial angular velocity about the centre of mass [rad/s]
+    std::vector<Region> regions;   // layers: later wins; the first selects all
+    std::vector<Skin> skins;       // at least one
+    std::optional<Method> method;  // instead of the solver's
+    std::optional<Kernel> kernel;  // instead of the solver's
 };
 
 /// Prescribed motion of the corners of the selected part.
@@ -173,6 +184,10 @@ struct EnrichmentCriteria {
 
 struct SolverOptions {
     Method method = Method::Enriched;
+    std::optional<Kernel> kernel;  // empty: quadratic for material points, else linear
+    Transfer transfer = Transfer::Flip;
+    double pic_rate =
+        5;  // FLIP keeps exp(-pic_rate dt) of what the grid cannot see per step [1/s]
     EnrichmentCriteria enrich;
     Steps steps = Steps::Implicit;
     std::optional<double> dt;  // largest step [s]; empty: a tenth of a frame
@@ -189,5 +204,17 @@ struct Scene {
     Contact contact;
     std::vector<Probe> probes;
 };
+
+/// The method of a body: its own, mpm for snow, else the solver's.
+inline Method method_of(const SolverOptions& solver, const Body& body) {
+    const bool is_snow = !body.regions.empty() && body.regions.front().model == Model::Snow;
+    return body.method.value_or(is_snow ? Method::Mpm : solver.method);
+}
+
+inline Kernel kernel_of(const SolverOptions& solver, const Body& body) {
+    const bool is_of_points = method_of(solver, body) == Method::Mpm;
+    const Kernel usual = is_of_points ? Kernel::Quadratic : Kernel::Linear;
+    return body.kernel.value_or(solver.kernel.value_or(usual));
+}
 
 }  // namespace sim

@@ -37,6 +37,7 @@ struct Simulation::Impl {
         state.inner_impulse.assign(state.x.size(), Vec3p{});
         for (const Body& body : scene.bodies)
             state.top_speed.push_back(body.velocity.norm());
+        stepper.start(state);
         if (scene.solver.steps == Steps::Static)
             stepper.equilibrium(state, 0);
         else
@@ -122,12 +123,12 @@ std::vector<assets::SurfaceFrame> Simulation::deformed_surfaces() const {
     std::vector<assets::SurfaceFrame> result;
     for (const AssembledBody& body : impl_->assembly.bodies) {
         const std::vector<Vec3> corners = corners_of(body, impl_->state.x);
-        const bool shows_enriched = impl_->scene.solver.method == Method::Enriched;
+        const bool shows_enriched = body.method == Method::Enriched;
         for (const EmbeddedSurface& surface : body.surfaces)
             result.push_back(surface.deformed(
                 body.lattice,
                 corners,
-                shows_enriched ? body.enrichment.enriched() : std::vector<char>{}));
+                shows_enriched ? body.enrichment->enriched() : std::vector<char>{}));
     }
     for (const ColliderSurface& surface : impl_->collider_surfaces)
         result.push_back(surface.at(impl_->state.time));
@@ -148,7 +149,14 @@ std::vector<std::byte> Simulation::checkpoint() const {
     for (const Field* field : impl_->fields())
         append(bytes, field->data(), field->size() * sizeof(Vec3p));
     for (const AssembledBody& body : impl_->assembly.bodies)
-        append(bytes, body.enrichment.enriched().data(), body.enrichment.enriched().size());
+        if (body.enrichment)
+            append(
+                bytes, body.enrichment->enriched().data(), body.enrichment->enriched().size());
+    append(bytes, state.affine.data(), state.affine.size() * sizeof(Gradient));
+    for (const PointState& points : state.points) {
+        append(bytes, points.F.data(), points.F.size() * sizeof(Matrix3<double>));
+        append(bytes, points.J_plastic.data(), points.J_plastic.size() * sizeof(double));
+    }
     return bytes;
 }
 
@@ -170,9 +178,16 @@ void Simulation::restore(const std::vector<std::byte>& bytes) {
         take(field->data(), field->size() * sizeof(Vec3p));
     }
     for (AssembledBody& body : impl_->assembly.bodies) {
+        if (!body.enrichment)
+            continue;
         std::vector<char> enriched(body.lattice.n_domains());
         take(enriched.data(), enriched.size());
-        body.enrichment.restore(std::move(enriched));
+        body.enrichment->restore(std::move(enriched));
+    }
+    take(state.affine.data(), state.affine.size() * sizeof(Gradient));
+    for (PointState& points : state.points) {
+        take(points.F.data(), points.F.size() * sizeof(Matrix3<double>));
+        take(points.J_plastic.data(), points.J_plastic.size() * sizeof(double));
     }
     assets::check(next == bytes.size(), "checkpoint of another scene");
     impl_->stepper.refresh(state);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "sim/base/field.h"
+#include "sim/grid/corner_map.h"
+#include "sim/points/material_points.h"
 
 #include <limits>
 #include <vector>
@@ -16,8 +18,10 @@ struct State {
         inner_impulse;  // velocity that inner forces gave in the last step, a guess for the next [m/s]
     Field x_before,
         v_before;  // where the last step began; kept by BDF2 alone, empty before its first step
-    std::vector<double> top_speed;  // (#bodies) that any corner has reached lately [m/s]
-    double last_dt = 0;             // of the last step, 0 before the first [s]
+    std::vector<Gradient> affine;  // B of [JSS15]: Σ_i w_i v_i (x_i - x)ᵀ; of APIC alone [m²/s]
+    std::vector<PointState> points;  // (#bodies) empty for those of domains
+    std::vector<double> top_speed;   // (#bodies) that any corner has reached lately [m/s]
+    double last_dt = 0;              // of the last step, 0 before the first [s]
     double dt_limit = std::numeric_limits<
         double>::infinity();  // what failed and unstable steps left of dt [s]
 };

@@ -26,7 +26,8 @@ void Stepper::advance(State& state, double end, double dt) {
             std::min({longest,
                       state.dt_limit,
                       colliders_.largest_step(state.x, state.v, state.time, longest),
-                      surfaces_.largest_step(state.x, state.top_speed, longest)});
+                      surfaces_.largest_step(state.x, surface_speeds(state), longest),
+                      relative_limit(state)});
         const double n = std::max(1.0, std::ceil(remaining / allowed - rounding));
         const double length = remaining / n;
         if (try_step(state, length)) {
@@ -40,6 +41,7 @@ void Stepper::advance(State& state, double end, double dt) {
         const bool is_expected = summary_.termination == Termination::Unstable;
         const assets::Error failure = diagnose(scene_,
                                                assembly_,
+                                               *this,
                                                state,
                                                is_explicit ? x_end_ : potential_.positions(),
                                                length,

@@ -9,10 +9,6 @@ namespace sim {
 
 namespace {
 
-// The share of PIC is a rate: exp(-pic_rate dt) of the difference between a corner's velocity and the grid's is kept
-// per step, so that halving dt does not drain more (the paper keeps 0.95 per step).
-constexpr double pic_rate = 5;  // [1/s]
-
 constexpr double forgetting = 1;  // rate at which a body's top speed fades [1/s]
 
 double energy_scale(const Lattice& lattice) {
@@ -25,7 +21,11 @@ double energy_scale(const Lattice& lattice) {
 std::vector<IncrementalPotential::ElasticBody> elastic_bodies(Assembly& assembly) {
     std::vector<IncrementalPotential::ElasticBody> result;
     for (AssembledBody& body : assembly.bodies)
-        result.push_back({&body.elasticity, body.begin, body.end, energy_scale(body.lattice)});
+        if (body.points)
+            result.push_back({nullptr, body.begin, body.end, 0});
+        else
+            result.push_back(
+                {&*body.elasticity, body.begin, body.end, energy_scale(body.lattice)});
     return result;
 }
 
@@ -34,9 +34,10 @@ std::vector<SurfaceBody> surface_bodies(const Scene& scene, const Assembly& asse
     if (scene.contact.mode == Contact::Mode::Surface)
         for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
             const AssembledBody& body = assembly.bodies[b];
-            result.push_back({&body.lattice,
-                              body.begin,
-                              ContactSurface(scene.bodies[b], body.lattice, body.begin)});
+            if (!body.points)
+                result.push_back({&body.lattice,
+                                  body.begin,
+                                  ContactSurface(scene.bodies[b], body.lattice, body.begin)});
         }
     return result;
 }
@@ -48,9 +49,17 @@ Stepper::Stepper(const Scene& scene, Assembly& assembly)
       assembly_(assembly),
       colliders_(scene.colliders, assembly.contact_corners()),
       surfaces_(surface_bodies(scene, assembly), scene.contact.friction),
-      potential_(map_, elastic_bodies(assembly), {&colliders_, &surfaces_}) {
+      potential_(map_, elastic_bodies(assembly), {&colliders_, &surfaces_}, make_points()) {
     for (const AssembledBody& body : assembly.bodies)
-        ranges_.push_back({body.begin, body.end, body.cell_size});
+        ranges_.push_back({body.begin, body.end, body.cell_size, body.kernel});
+}
+
+std::vector<double> Stepper::surface_speeds(const State& state) const {
+    std::vector<double> speeds;
+    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b)
+        if (!assembly_.bodies[b].points)
+            speeds.push_back(state.top_speed[b]);
+    return speeds;
 }
 
 void Stepper::begin_step(const State& state, double dt, Scheme scheme) {
@@ -58,17 +67,21 @@ void Stepper::begin_step(const State& state, double dt, Scheme scheme) {
     choose_free_corners(state.x);
     start_scheme(state, dt, scheme);
     transfer(state);
-    prescribe_dofs(state);
+    prescribe_dofs(state, dt);
+    for (std::size_t b = 0; b < points_.size(); ++b)
+        if (points_[b])
+            points_[b]->begin_step(state.points[b]);
     colliders_.begin_step(state.x, state.top_speed, state.time, dt);
 }
 
 void Stepper::choose_free_corners(const Field& x) {
-    const Method method =
-        scene_.solver.steps == Steps::Static ? Method::Fem : scene_.solver.method;
-    free_.assign(x.size(), method == Method::Fem);
-    if (method == Method::Enriched)
-        for (AssembledBody& body : assembly_.bodies)
-            body.enrichment.update(body.lattice, &x[body.begin], &free_[body.begin]);
+    free_.assign(x.size(), 0);
+    for (AssembledBody& body : assembly_.bodies) {
+        if (body.method == Method::Fem || scene_.solver.steps == Steps::Static)
+            std::fill(free_.begin() + body.begin, free_.begin() + body.end, 1);
+        else if (body.method == Method::Enriched)
+            body.enrichment->update(body.lattice, &x[body.begin], &free_[body.begin]);
+    }
     for (const int c : prescribed_.corners)
         free_[c] = 1;
     map_.rebuild(x, free_, ranges_);
@@ -111,27 +124,33 @@ void Stepper::transfer(const State& state) {
     // Mass and momentum to the degrees of freedom: M = Tᵀ m, M q_n = Tᵀ (m v). Lumped means over the corners around a
     // node see a rotation too slow where corners lie on one side of it, so the body's rigid motion goes over by its
     // value at the node and only the rest by means: rigid motion is exact, and so is momentum, as Σ_i w_ic x_i = x_c.
+    // APIC carries rotation by itself.
     const int n = map_.n_dofs();
     auto& step = potential_.step();
+    const bool is_affine = scene_.solver.transfer == Transfer::Apic;
     corner_.resize(state.x.size());
     std::vector<RigidMotion> rigid;
-    for (const auto& [begin, end, cell_size] : ranges_) {
+    for (const auto& [begin, end, cell_size, kernel] : ranges_) {
         const bool any_slave =
             std::find(free_.begin() + begin, free_.begin() + end, 0) != free_.begin() + end;
         rigid.push_back(any_slave ? rigid_motion(assembly_.mass, state.x, v_hat_, begin, end)
                                   : RigidMotion{});
+        const RigidMotion apart = is_affine ? RigidMotion{} : rigid.back();
         for (int c = begin; c < end; ++c)
-            corner_[c] = assembly_.mass[c] * (v_hat_[c] - rigid.back().at(state.x[c]));
+            corner_[c] = assembly_.mass[c] * (v_hat_[c] - apart.at(state.x[c]));
     }
     dof_mass_ = map_.applied_transposed(assembly_.mass, dof_mass_);
     const Field& momentum = map_.applied_transposed(corner_, q_n_);
+    if (is_affine && !map_.is_identity())
+        add_affine_momentum(state);
     const Field& force = map_.applied_transposed(assembly_.force, step.q_tilde);
     q_n_.resize(n);
     step.q_tilde.resize(n);
     step.mass.resize(n);
 
     // q~ = (q_n + dt^ M⁻¹ f) / (1 + damping dt^); damping acts at the end of the step, inside M.
-    // A node that corners only touch with weight zero has no mass: it is held, and nothing depends on it.
+    // A node that corners only touch with weight zero has no mass. It moves with the body at first: points on a node see
+    // the slope of linear kernels all the same, so implicit steps put it where the stress asks for.
     const double damped = 1 + scene_.solver.damping * dt_hat_;
     step.is_free.assign(n, Vec3p{1, 1, 1, 0});
     inverse_mass_.resize(n);
@@ -139,17 +158,16 @@ void Stepper::transfer(const State& state) {
         const double mass = dof_mass_[i][0];
         const double inverse_mass = mass > 0 ? 1 / mass : 0;
         inverse_mass_[i] = inverse_mass;
-        if (!(mass > 0))
-            step.is_free[i] = Vec3p{};
-        q_n_[i] =
-            rigid[map_.dof_body()[i]].at(map_.dof_position()[i]) + inverse_mass * momentum[i];
+        q_n_[i] = inverse_mass * momentum[i];
+        if (!is_affine || !(mass > 0))
+            q_n_[i] += rigid[map_.dof_body()[i]].at(map_.dof_position()[i]);
         step.q_tilde[i] = (q_n_[i] + dt_hat_ * inverse_mass * force[i]) / damped;
         step.mass[i] = damped * dof_mass_[i];
     }
     step.static_force.clear();
 }
 
-void Stepper::prescribe_dofs(const State& state) {
+void Stepper::prescribe_dofs(const State& state, double dt) {
     // Prescribed components move exactly to their targets. In explicit steps the whole way is one drift.
     auto& step = potential_.step();
     q_.assign(map_.n_dofs(), Vec3p{});
@@ -161,38 +179,48 @@ void Stepper::prescribe_dofs(const State& state) {
             drift > 0 ? (prescribed_.target[c] - step.x_n[c]) / drift : state.v[c];
         q_[i] = velocity * (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]);
     }
+    pinned_nodes_ = pinned_nodes(scene_, assembly_, map_, dof_mass_, state.time, dt);
+    for (const PinnedNode& node : pinned_nodes_) {
+        step.is_free[node.dof] = node.is_free;
+        q_[node.dof] = node.velocity;
+    }
 }
 
 void Stepper::exchange_contact(const State& state, double dt) {
-    if (scene_.contact.mode != Contact::Mode::Grid || assembly_.bodies.size() < 2)
+    // Surface contact is between domains: points meet bodies on the grid in any case.
+    std::vector<ContactPair> pairs;
+    const std::vector<AssembledBody>& bodies = assembly_.bodies;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        for (std::size_t j = i + 1; j < bodies.size(); ++j)
+            if (scene_.contact.mode == Contact::Mode::Grid || bodies[i].points
+                || bodies[j].points)
+                pairs.push_back({{bodies[i].begin, bodies[i].end},
+                                 {bodies[j].begin, bodies[j].end},
+                                 std::max(bodies[i].lattice.edge, bodies[j].lattice.edge)});
+    if (pairs.empty())
         return;
     Field& change = corner_;
     change = moved_;
-    std::vector<ContactBody> bodies;
-    double cell_size = 0;
-    for (const AssembledBody& body : assembly_.bodies) {
-        bodies.push_back({body.begin, body.end});
-        cell_size = std::max(cell_size, body.lattice.edge);
-    }
-    exchange_on_grid(bodies,
+    exchange_on_grid(pairs,
                      {state.x, assembly_.mass, assembly_.outside, prescribed_.is_free},
-                     cell_size,
                      dt,
                      scene_.contact.friction,
                      change);
-
     move_through_grid(change);
 }
 
 void Stepper::move_through_grid(Field& wanted) {
     // A slaved corner can only move as its grid does. Were it given more, the next step would not know of it, ask for
     // the same again, and pile up speed: so a change goes through the map, T M⁻¹ Tᵀ m, free corners as it is.
+    const Field& is_free = potential_.step().is_free;
     Field dofs(map_.n_dofs());
     for (std::size_t c = 0; c < moved_.size(); ++c)
         wanted[c] = assembly_.mass[c] * (wanted[c] - moved_[c]) * prescribed_.is_free[c];
     map_.apply_transposed(wanted, dofs);
-    for (int i = 0; i < map_.n_dofs(); ++i)
-        dofs[i] *= inverse_mass_[i];
+    for (int i = 0; i < map_.n_dofs(); ++i) {
+        dofs[i] *= inverse_mass_[i] * is_free[i];
+        q_moved_[i] += dofs[i];
+    }
     map_.apply(dofs, wanted);
     for (std::size_t c = 0; c < moved_.size(); ++c)
         moved_[c] += wanted[c];
@@ -211,9 +239,11 @@ void Stepper::drift(double length) {
 
 void Stepper::commit(State& state, double dt) {
     // Corner velocities: the new ones of the degrees of freedom, and for slaved corners what the grid could not see
-    // of the old ones (FLIP), fading at the rate of PIC.
+    // of the old ones (FLIP), fading at the rate of PIC: exp(-pic_rate dt) is kept per step, so that halving dt does not
+    // drain more (the paper keeps 0.95 per step).
     const Field& seen = map_.applied(q_n_, corner_);
-    const double keep = std::exp(-pic_rate * dt);
+    const double keep =
+        scene_.solver.transfer == Transfer::Apic ? 0 : std::exp(-scene_.solver.pic_rate * dt);
     for (std::size_t c = 0; c < state.v.size(); ++c)
         state.v[c] = moved_[c] + (free_[c] ? Vec3p{} : keep * (v_hat_[c] - seen[c]));
     std::swap(state.x, x_end_);
@@ -230,10 +260,14 @@ void Stepper::commit(State& state, double dt) {
 
 void Stepper::refresh(const State& state) {
     begin_step(state, 0, Scheme::BackwardEuler);
-    q_ = q_n_;
+    q_moved_ = q_ = q_n_;
     Field gradient;
     potential_.value_and_gradient(q_, gradient);
     gradient_ = potential_.corner_gradient();
+    Field inner(map_.n_dofs()), force(map_.n_dofs());
+    add_start_gradient(inner);
+    map_.apply_transposed(assembly_.force, force);
+    set_node_reactions([&](int i) { return inner[i] - force[i]; });
     reaction_.assign(state.x.size(), Vec3p{});
     for (const int c : prescribed_.corners)
         reaction_[c] = (potential_.corner_gradient()[c] - assembly_.force[c])

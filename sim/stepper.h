@@ -4,11 +4,15 @@
 #include "sim/assembly.h"
 #include "sim/contact/surface_contact.h"
 #include "sim/incremental_potential.h"
+#include "sim/pinned_nodes.h"
 #include "sim/pinning.h"
+#include "sim/points/point_energy.h"
 #include "sim/rigid_motion.h"
 #include "sim/solver/newton.h"
 #include "sim/state.h"
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -33,6 +37,9 @@ class Stepper {
 
     int newton_iterations = 0, cg_iterations = 0, steps = 0;  // totals
 
+    /// Gives points, and corners that APIC moves, what they remember of a body that starts undeformed.
+    void start(State& state);
+
     /// What went wrong in the steps that a shorter one replaced, in words.
     std::vector<std::string> failures;
 
@@ -46,6 +53,17 @@ class Stepper {
     const SurfaceContact& surfaces() const { return surfaces_; }
 
     const Prescribed& prescribed() const { return prescribed_; }
+
+    /// What a pin does to a node of a body of points.
+    struct NodeReaction {
+        int pin = 0;
+        Vec3 at{0, 0, 0}, force{0, 0, 0};  // [m], [N]
+    };
+
+    const std::vector<NodeReaction>& node_reactions() const { return node_reactions_; }
+
+    /// The energy of a body of points, null for others.
+    const PointEnergy* points(int body) const { return points_[body].get(); }
 
     const IncrementalPotential& potential() const { return potential_; }
 
@@ -65,11 +83,21 @@ class Stepper {
 
     Motion motion_before(const State& state, double dt, int c) const;
     void transfer(const State& state);
-    void prescribe_dofs(const State& state);
+    void prescribe_dofs(const State& state, double dt);
     void exchange_contact(const State& state, double dt);
     void move_through_grid(Field& wanted);
     void drift(double length);
     void commit(State& state, double dt);
+
+    // point_step.cpp: what points and APIC add to a step
+    std::vector<GridEnergy*> make_points();
+    void add_affine_momentum(const State& state);
+    void commit_affine(State& state, const Field& q) const;
+    void set_node_reactions(const std::function<Vec3p(int)>& force_on);
+    double add_grid_gradient(const Field& q, double dt, Field& gradient);
+    void add_start_gradient(Field& gradient);
+    double seen_frequency_of_points();
+    double relative_limit(const State& state) const;
 
     // implicit_step.cpp
     bool try_implicit(State& state, double dt);
@@ -79,6 +107,7 @@ class Stepper {
     void end_implicit(State& state, double dt);
     void guess(const State& state);
     bool start_from_rest();
+    bool is_held(const AssembledBody& body) const;
     void balance_momentum();
     void set_reactions();
 
@@ -95,12 +124,15 @@ class Stepper {
                          double time_end,
                          NewtonSummary& summary);
 
+    std::vector<double> surface_speeds(const State& state) const;
+
     const Scene& scene_;
     Assembly& assembly_;
     std::vector<CornerMap::BodyRange> ranges_;
     CornerMap map_;
     ColliderContact colliders_;
-    SurfaceContact surfaces_;  // empty where contact is on the grid
+    SurfaceContact surfaces_;                           // empty where contact is on the grid
+    std::vector<std::unique_ptr<PointEnergy>> points_;  // (#bodies)
     IncrementalPotential potential_;
     NewtonScratch scratch_;
     NewtonSummary summary_;  // of the last solve
@@ -110,6 +142,10 @@ class Stepper {
     double dt_hat_ = 0;                 // dt^ of the scheme [s]
     Field v_hat_;                       // v^ of the scheme (#C) [m/s]
     Field dof_mass_, q_n_, q_;          // (#dofs)
+    Field q_moved_;  // (#dofs) what moved_ comes from, but for a rigid shift [m/s]
+    std::vector<PinnedNode> pinned_nodes_;
+    std::vector<NodeReaction> node_reactions_;
+    Field start_gradient_, grid_gradient_;  // of explicit steps (#dofs) [N]
     Field moved_;  // (#C) velocity that moves the corners in this step [m/s]
     Field corner_, reaction_;
     Field x_end_;                    // (#C) where they end [m]

@@ -13,7 +13,7 @@ namespace sim {
 struct ContactCorner {
     int corner = 0;  // in the field of all corners
     int body = 0;
-    double outside = 0;  // distance that it sticks out of the body's surface at rest, >= 0 [m]
+    double outside = 0;  // distance that it sticks out of the body's surface at rest; < 0: lies inside [m]
     double stiffness = 0;  // k of the penalty [N/m]
     double mass = 0;       // [kg]
     double edge = 0;       // of its body's domains, s [m]

@@ -206,23 +206,21 @@ class PairGrid {
 
 }  // namespace
 
-void exchange_on_grid(const std::vector<ContactBody>& bodies,
+void exchange_on_grid(const std::vector<ContactPair>& pairs,
                       const ContactFields& corners,
-                      double cell_size,
                       double dt,
                       const Friction& friction,
                       Field& velocity) {
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-        for (std::size_t j = i + 1; j < bodies.size(); ++j) {
-            const Bounds where = common(bounds_of(bodies[i], corners.x, velocity, dt),
-                                        bounds_of(bodies[j], corners.x, velocity, dt),
-                                        cell_size);
-            if (is_empty(where))
-                continue;
-            PairGrid grid(bodies[i], bodies[j], corners, where, cell_size);
-            for (int k = 0; k < contact_sweeps; ++k)
-                grid.sweep(dt, friction, velocity);
-        }
+    for (const auto& [first, second, cell_size] : pairs) {
+        const Bounds where = common(bounds_of(first, corners.x, velocity, dt),
+                                    bounds_of(second, corners.x, velocity, dt),
+                                    cell_size);
+        if (is_empty(where))
+            continue;
+        PairGrid grid(first, second, corners, where, cell_size);
+        for (int k = 0; k < contact_sweeps; ++k)
+            grid.sweep(dt, friction, velocity);
+    }
 }
 
 }  // namespace sim

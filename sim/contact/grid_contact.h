@@ -13,6 +13,12 @@ struct ContactBody {
     int begin = 0, end = 0;
 };
 
+/// Two bodies that may meet, and the cells of the grid on which they do.
+struct ContactPair {
+    ContactBody first, second;
+    double cell_size = 0;  // [m]
+};
+
 /// What every corner brings into contact; all indexed by corner.
 struct ContactFields {
     const Field& x;                      // positions at the start of the step [m]
@@ -21,14 +27,13 @@ struct ContactFields {
     const Field& is_free;                // 1 in free components, 0 in prescribed ones
 };
 
-/// All corners, free ones too, deposit mass and momentum on a grid of cells `cell_size`. At a node where two bodies are
+/// All corners of a pair, free ones too, deposit mass and momentum on a grid. At a node where two bodies are
 /// present, approach each other, and overlap along the normal by the end of the step (largest n·x of the one against
 /// smallest of the other), they exchange the impulse m1 m2 / (m1 + m2) times the approach, with Coulomb friction; each
 /// corner gets Σ_i w_i dv_i back, so that momentum is exact. Normals from the mass-weighted shape gradients of both.
-/// Repeated `contact_sweeps` times, pair after pair in the order of the bodies. Changes `velocity` (#C) [m/s].
-void exchange_on_grid(const std::vector<ContactBody>& bodies,
+/// Repeated `contact_sweeps` times, pair after pair. Changes `velocity` (#C) [m/s].
+void exchange_on_grid(const std::vector<ContactPair>& pairs,
                       const ContactFields& corners,
-                      double cell_size,
                       double dt,
                       const Friction& friction,
                       Field& velocity);

@@ -1,223 +1,170 @@
 #include "sim/grid/corner_map.h"
 
-#include "assets/base/error.h"
 #include "sim/base/parallel.h"
-
-#include <algorithm>
-#include <cmath>
+#include "sim/grid/kernel.h"
 
 namespace sim {
 
 namespace {
 
-constexpr int cell_chunk = 1024;
+constexpr int group_chunk = 256;
 constexpr int node_chunk = 4096;
-constexpr double most_cells = 1 << 28;
+constexpr double least_moment =
+    1e-6;  // in cells squared: a linear spline has none on its nodes
 
-/// Trilinear weights of the local coordinates t in [0,1]³, node a at (a & 1, a >> 1 & 1, a >> 2 & 1).
-std::array<double, 8> trilinear_weights(const Vec3p& t) {
-    const double x[2] = {1 - t[0], t[0]}, y[2] = {1 - t[1], t[1]}, z[2] = {1 - t[2], t[2]};
-    std::array<double, 8> w;
-    for (int a = 0; a < 8; ++a)
-        w[a] = x[a & 1] * (y[a >> 1 & 1] * z[a >> 2]);
-    return w;
+/// Σ_a w_a v_a along a row of nodes.
+template <int n>
+[[gnu::always_inline]] inline Vec3p row_sum(const Vec3p* w, const Vec3p* v) {
+    Vec3p sum = w[0][0] * v[0];
+    for (int a = 1; a < n; ++a)
+        sum += w[a][0] * v[a];
+    return sum;
 }
 
-Vec3p floor_of(const Vec3p& v) {
-    return Vec3p{std::floor(v[0]), std::floor(v[1]), std::floor(v[2]), 0};
-}
-
-struct CellBox {
-    Vec3p low{}, high{};  // integer cell coordinates, inclusive
-
-    std::array<int, 3> size() const {
-        return {
-            int(high[0] - low[0]) + 1, int(high[1] - low[1]) + 1, int(high[2] - low[2]) + 1};
+/// The second factors of G in one axis after the other: see CornerMap::Factor.
+template <class S>
+[[gnu::always_inline]] inline void factors(
+    CornerMap::Factor factor, const Vec3p& t, double cell_size, Vec3p* w, Vec3p* d) {
+    S::weights(t, w);
+    if (factor == CornerMap::Factor::Moment) {
+        for (int a = 0; a < S::n; ++a)
+            d[a] = w[a] * (a - t) * cell_size;
+        return;
     }
-};
+    S::slopes(t, d);
+    for (int a = 0; a < S::n; ++a)
+        d[a] *= 1 / cell_size;
+    if (factor == CornerMap::Factor::SlopeSquared)
+        for (int a = 0; a < S::n; ++a) {
+            w[a] *= w[a];
+            d[a] *= d[a];
+        }
+}
+
+template <int n>
+[[gnu::always_inline]] inline Gradient gradient_at(const Vec3p* w,
+                                                   const Vec3p* d,
+                                                   const Vec3p* v) {
+    Gradient sum{};
+    for (int c = 0; c < n; ++c)
+        for (int b = 0; b < n; ++b, v += n) {
+            const Vec3p row = row_sum<n>(w, v), slope = row_sum<n>(d, v);
+            sum.column[0] += (w[b][1] * w[c][2]) * slope;
+            sum.column[1] += (d[b][1] * w[c][2]) * row;
+            sum.column[2] += (w[b][1] * d[c][2]) * row;
+        }
+    return sum;
+}
+
+/// Adds A ∂w to the nodes of one plane of a stencil.
+template <int n>
+[[gnu::always_inline]] inline void add_to_plane(
+    const Vec3p* w, const Vec3p* d, int c, const Gradient& A, Vec3p* sum) {
+    for (int b = 0; b < n; ++b) {
+        const Vec3p along = (w[b][1] * w[c][2]) * A.column[0];
+        const Vec3p across =
+            (d[b][1] * w[c][2]) * A.column[1] + (w[b][1] * d[c][2]) * A.column[2];
+        for (int a = 0; a < n; ++a)
+            sum[n * b + a] += d[a][0] * along + w[a][0] * across;
+    }
+}
 
 }  // namespace
-
-void CornerMap::rebuild(const Field& corners,
-                        const std::vector<char>& free,
-                        const std::vector<BodyRange>& bodies) {
-    dof_of_corner_.assign(corners.size(), -1);
-    free_corner_.clear();
-    dof_body_.clear();
-    dof_position_.clear();
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-        for (int c = bodies[b].begin; c < bodies[b].end; ++c)
-            if (free[c]) {
-                dof_of_corner_[c] = n_free();
-                free_corner_.push_back(c);
-                dof_body_.push_back(static_cast<int>(b));
-                dof_position_.push_back(corners[c]);
-            }
-    n_nodes_ = 0;
-    cells_.clear();
-    slave_corner_.clear();
-    slave_weights_.clear();
-    node_sources_.clear();
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-        rebuild_body(corners, bodies[b], static_cast<int>(b));
-    cell_sums_.resize(8 * cells_.size());
-}
-
-void CornerMap::rebuild_body(const Field& corners, const BodyRange& body, int index) {
-    // The box of cells that holds all slaved corners.
-    const double inverse_size = 1 / body.cell_size;
-    CellBox box;
-    Vec3p sum{};  // not finite where a corner is not: comparisons alone would pass over it
-    bool any = false;
-    slave_order_.clear();
-    for (int c = body.begin; c < body.end; ++c) {
-        if (dof_of_corner_[c] >= 0)
-            continue;
-        const Vec3p cell = floor_of(corners[c] * inverse_size);
-        if (!any)
-            box.low = box.high = cell;
-        any = true;
-        box.low = cell < box.low ? cell : box.low;
-        box.high = cell > box.high ? cell : box.high;
-        sum += cell;
-        slave_order_.push_back(c);
-    }
-    if (!any)
-        return;
-    const Vec3p extent = box.high - box.low + 1.0;
-    if (!(extent[0] * extent[1] * extent[2] < most_cells)
-        || !std::isfinite(sum[0] + sum[1] + sum[2]))
-        throw assets::Error(
-            assets::ErrorKind::Diverged,
-            "a body spreads over more background cells than can be held; it has flown apart");
-
-    // Counting sort of the slaved corners by cell.
-    const std::array<int, 3> n = box.size();
-    const int n_cells = n[0] * n[1] * n[2];
-    cell_start_.assign(n_cells + 1, 0);
-    cell_of_slave_.resize(slave_order_.size());
-    for (std::size_t k = 0; k < slave_order_.size(); ++k) {
-        const Vec3p local = floor_of(corners[slave_order_[k]] * inverse_size) - box.low;
-        const int cell = int(local[0]) + n[0] * (int(local[1]) + n[1] * int(local[2]));
-        cell_of_slave_[k] = cell;
-        ++cell_start_[cell + 1];
-    }
-    for (int cell = 0; cell < n_cells; ++cell)
-        cell_start_[cell + 1] += cell_start_[cell];
-
-    // Occupied cells in order, each with its range of slaves.
-    const int first_slave = static_cast<int>(slave_corner_.size());
-    const int first_new_cell = static_cast<int>(cells_.size());
-    std::vector<int>& base =
-        node_of_;  // dense coordinates of each occupied cell, read by number_nodes
-    base.clear();
-    for (int cell = 0; cell < n_cells; ++cell)
-        if (cell_start_[cell + 1] > cell_start_[cell]) {
-            cells_.push_back(
-                {{}, first_slave + cell_start_[cell], first_slave + cell_start_[cell + 1]});
-            base.push_back(cell);
-        }
-    slave_corner_.resize(first_slave + slave_order_.size());
-    slave_weights_.resize(slave_corner_.size());
-    for (std::size_t k = 0; k < slave_order_.size(); ++k) {
-        const int slave = first_slave + cell_start_[cell_of_slave_[k]]++;
-        const Vec3p scaled = corners[slave_order_[k]] * inverse_size;
-        slave_corner_[slave] = slave_order_[k];
-        slave_weights_[slave] = trilinear_weights(scaled - floor_of(scaled));
-    }
-    number_nodes(n, first_new_cell, base);
-
-    dof_body_.resize(n_dofs(), index);
-    dof_position_.resize(n_dofs());
-    for (std::size_t k = 0; k < base.size(); ++k) {
-        const Vec3p cell = box.low
-                           + Vec3p{double(base[k] % n[0]),
-                                   double(base[k] / n[0] % n[1]),
-                                   double(base[k] / (n[0] * n[1])),
-                                   0};
-        for (int a = 0; a < 8; ++a)
-            dof_position_[cells_[first_new_cell + k].nodes[a]] =
-                (cell + Vec3p{double(a & 1), double(a >> 1 & 1), double(a >> 2), 0})
-                * body.cell_size;
-    }
-}
-
-void CornerMap::number_nodes(const std::array<int, 3>& n_cells_per_axis,
-                             int first_new_cell,
-                             const std::vector<int>& base) {
-    const int nx = n_cells_per_axis[0], ny = n_cells_per_axis[1], nz = n_cells_per_axis[2];
-    const int stride_y = nx + 1, stride_z = (nx + 1) * (ny + 1);
-    std::vector<int>& node_of = cell_start_;
-    node_of.assign(static_cast<std::size_t>(stride_z) * (nz + 1), -1);
-    for (std::size_t k = 0; k < base.size(); ++k) {
-        const int cell = first_new_cell + static_cast<int>(k);
-        const int i = base[k] % nx, j = base[k] / nx % ny, l = base[k] / (nx * ny);
-        for (int a = 0; a < 8; ++a) {
-            int& node = node_of[i + (a & 1) + stride_y * (j + (a >> 1 & 1))
-                                + stride_z * (l + (a >> 2))];
-            if (node < 0) {
-                node = n_nodes_++;
-                node_sources_.push_back({-1, -1, -1, -1, -1, -1, -1, -1});
-            }
-            cells_[cell].nodes[a] = n_free() + node;
-            node_sources_[node][a] = 8 * cell + a;
-        }
-    }
-}
 
 void CornerMap::apply(const Field& q, Field& u) const {
     for (int k = 0; k < n_free(); ++k)
         u[free_corner_[k]] = q[k];
-    for_chunks(static_cast<int>(cells_.size()), cell_chunk, [&](int begin, int end) {
+    for (const Part& part : parts_)
+        visit_spline(part.kernel, [&]<class S>(S) {
+            constexpr int n = S::n, per_group = n * n * n;
+            for_chunks(
+                part.last_group - part.first_group, group_chunk, [&](int begin, int end) {
+                    for (int k = begin; k < end; ++k) {
+                        const Group& group = groups_[part.first_group + k];
+                        const int* nodes = &group_nodes_[part.first_entry + k * per_group];
+                        Vec3p v[per_group];
+                        for (int a = 0; a < per_group; ++a)
+                            v[a] = q[nodes[a]];
+                        for (int s = group.begin; s < group.end; ++s) {
+                            Vec3p w[n], sum{};
+                            S::weights(slave_local_[s], w);
+                            for (int c = 0; c < n; ++c)
+                                for (int b = 0; b < n; ++b)
+                                    sum += (w[b][1] * w[c][2])
+                                           * row_sum<n>(w, v + n * (n * c + b));
+                            u[slave_corner_[s]] = sum;
+                        }
+                    }
+                });
+        });
+}
+
+template <class S, class Write>
+void CornerMap::sum_at_nodes(const Part& part, const Write& write) const {
+    constexpr int per_group = S::n * S::n * S::n;
+    for_chunks(part.last_node - part.first_node, node_chunk, [&](int begin, int end) {
+        for (int i = begin; i < end; ++i) {
+            const int* sources =
+                &node_sources_[part.first_source + static_cast<std::size_t>(i) * per_group];
+            Vec3p sum{};
+            for (int a = 0; a < per_group; ++a)
+                if (sources[a] >= 0)
+                    sum += group_sums_[sources[a]];
+            write(n_free() + part.first_node + i, sum);
+        }
+    });
+}
+
+template <class S, bool squared>
+void CornerMap::gather(const Part& part, const Field& f, Field& q) const {
+    constexpr int n = S::n, per_group = n * n * n;
+    constexpr int planes =
+        n == 2 ? 2 : 1;  // summed at once, so that the sums live in registers
+    for_chunks(part.last_group - part.first_group, group_chunk, [&](int begin, int end) {
         for (int k = begin; k < end; ++k) {
-            const Cell& cell = cells_[k];
-            Vec3p v[8];
-            for (int a = 0; a < 8; ++a)
-                v[a] = q[cell.nodes[a]];
-            for (int s = cell.begin; s < cell.end; ++s) {
-                const auto& w = slave_weights_[s];
-                u[slave_corner_[s]] =
-                    ((w[0] * v[0] + w[1] * v[1]) + (w[2] * v[2] + w[3] * v[3]))
-                    + ((w[4] * v[4] + w[5] * v[5]) + (w[6] * v[6] + w[7] * v[7]));
+            const Group& group = groups_[part.first_group + k];
+            Vec3p* sums = &group_sums_[part.first_entry + k * per_group];
+            for (int first = 0; first < n; first += planes) {
+                Vec3p sum[planes * n * n] = {};
+                for (int s = group.begin; s < group.end; ++s) {
+                    Vec3p w[n];
+                    S::weights(slave_local_[s], w);
+                    if (squared)
+                        for (Vec3p& weight : w)
+                            weight *= weight;
+                    const Vec3p value = f[slave_corner_[s]];
+#pragma GCC unroll 4
+                    for (int c = 0; c < planes; ++c)
+#pragma GCC unroll 4
+                        for (int b = 0; b < n; ++b) {
+                            const Vec3p share = (w[b][1] * w[first + c][2]) * value;
+#pragma GCC unroll 4
+                            for (int a = 0; a < n; ++a)
+                                sum[n * (n * c + b) + a] += w[a][0] * share;
+                        }
+                }
+                for (int a = 0; a < planes * n * n; ++a)
+                    sums[n * n * first + a] = sum[a];
             }
         }
     });
+    sum_at_nodes<S>(part, [&](int i, const Vec3p& sum) { q[i] = sum; });
 }
 
 template <bool squared>
-void CornerMap::gather(const Field& f, Field& q) const {
+void CornerMap::gather_all(const Field& f, Field& q) const {
     for (int k = 0; k < n_free(); ++k)
         q[k] = f[free_corner_[k]];
-    // Each cell sums what its corners give to its eight nodes.
-    for_chunks(static_cast<int>(cells_.size()), cell_chunk, [&](int begin, int end) {
-        for (int k = begin; k < end; ++k) {
-            Vec3p sum[8] = {};
-            for (int s = cells_[k].begin; s < cells_[k].end; ++s) {
-                const Vec3p value = f[slave_corner_[s]];
-#pragma GCC unroll 8  // the eight sums live in registers
-                for (int a = 0; a < 8; ++a) {
-                    const double w = slave_weights_[s][a];
-                    sum[a] += (squared ? w * w : w) * value;
-                }
-            }
-            for (int a = 0; a < 8; ++a)
-                cell_sums_[8 * k + a] = sum[a];
-        }
-    });
-    // Each node sums its cells.
-    for_chunks(n_nodes_, node_chunk, [&](int begin, int end) {
-        for (int i = begin; i < end; ++i) {
-            Vec3p sum{};
-            for (const int source : node_sources_[i])
-                if (source >= 0)
-                    sum += cell_sums_[source];
-            q[n_free() + i] = sum;
-        }
-    });
+    for (const Part& part : parts_)
+        visit_spline(part.kernel, [&]<class S>(S) { gather<S, squared>(part, f, q); });
 }
 
 void CornerMap::apply_transposed(const Field& f, Field& q) const {
-    gather<false>(f, q);
+    gather_all<false>(f, q);
+}
+
+void CornerMap::apply_squared_transposed(const Field& k, Field& d) const {
+    gather_all<true>(k, d);
 }
 
 const Field& CornerMap::applied(const Field& q, Field& buffer) const {
@@ -236,8 +183,88 @@ const Field& CornerMap::applied_transposed(const Field& f, Field& buffer) const 
     return buffer;
 }
 
-void CornerMap::apply_squared_transposed(const Field& k, Field& d) const {
-    gather<true>(k, d);
+template <class S>
+void CornerMap::pass(
+    const Part& part, Factor factor, const Field* q, const AtSlaves& f, Field* sums) const {
+    constexpr int n = S::n, per_group = n * n * n;
+    const Group* groups = groups_.data() + part.first_group;
+    for_chunks(part.last_group - part.first_group, group_chunk, [&](int begin, int end) {
+        thread_local std::vector<Gradient> values;
+        const int first = groups[begin].begin, last = groups[end - 1].end;
+        values.resize(last - first);
+        if (q != nullptr)
+            for (int k = begin; k < end; ++k) {
+                const int* nodes = &group_nodes_[part.first_entry + k * per_group];
+                Vec3p v[per_group];
+                for (int a = 0; a < per_group; ++a)
+                    v[a] = (*q)[nodes[a]];
+                for (int s = groups[k].begin; s < groups[k].end; ++s) {
+                    Vec3p w[n], d[n];
+                    factors<S>(factor, slave_local_[s], part.cell_size, w, d);
+                    values[s - first] = gradient_at<n>(w, d, v);
+                }
+            }
+        f({first, last, begin / group_chunk}, values.data());
+        if (sums == nullptr)
+            return;
+        for (int k = begin; k < end; ++k)
+            for (int c = 0; c < n; ++c) {
+                Vec3p sum[n * n] = {};
+                for (int s = groups[k].begin; s < groups[k].end; ++s) {
+                    Vec3p w[n], d[n];
+                    factors<S>(factor, slave_local_[s], part.cell_size, w, d);
+                    add_to_plane<n>(w, d, c, values[s - first], sum);
+                }
+                std::copy_n(
+                    sum, n * n, &group_sums_[part.first_entry + k * per_group + n * n * c]);
+            }
+    });
+    if (sums != nullptr)
+        sum_at_nodes<S>(part, [&](int i, const Vec3p& sum) { (*sums)[i] += sum; });
+}
+
+void CornerMap::visit_gradients(int body,
+                                Factor factor,
+                                const Field& q,
+                                const AtSlaves& visit) const {
+    const Part& part = parts_[body];
+    visit_spline(part.kernel, [&]<class S>(S) { pass<S>(part, factor, &q, visit, nullptr); });
+}
+
+void CornerMap::add_transposed(int body,
+                               Factor factor,
+                               const AtSlaves& fill,
+                               Field& sums) const {
+    const Part& part = parts_[body];
+    visit_spline(part.kernel, [&]<class S>(S) { pass<S>(part, factor, nullptr, fill, &sums); });
+}
+
+void CornerMap::add_through(int body, const Field& q, const AtSlaves& f, Field& sums) const {
+    const Part& part = parts_[body];
+    visit_spline(part.kernel, [&]<class S>(S) { pass<S>(part, Factor::Slope, &q, f, &sums); });
+}
+
+CornerMap::Slaves CornerMap::slaves_of(int body) const {
+    const Part& part = parts_[body];
+    const int n_groups = part.last_group - part.first_group;
+    if (n_groups == 0)
+        return {};
+    return {groups_[part.first_group].begin,
+            groups_[part.last_group - 1].end,
+            (n_groups + group_chunk - 1) / group_chunk};
+}
+
+Vec3p CornerMap::second_moment(int body, int slave) const {
+    const Part& part = parts_[body];
+    const Vec3p& t = slave_local_[slave];
+    return visit_spline(part.kernel,
+                        [&]<class S>(S) {
+                            const Vec3p exact =
+                                S::n == 2 ? t * (1 - t) : Vec3p{} + S::second_moment;
+                            const Vec3p least = Vec3p{} + least_moment;
+                            return Vec3p(exact > least ? exact : least);
+                        })
+           * (part.cell_size * part.cell_size);
 }
 
 }  // namespace sim

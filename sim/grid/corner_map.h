@@ -1,26 +1,34 @@
-// The map T from degrees of freedom to corners, v_corner = T q, rebuilt every step. [Z18 §4, §5.1]
+// The map T from degrees of freedom to corners, v_corner = T q, rebuilt every step, and its gradients. [Z18 §4, §5.1]
 #pragma once
 
 #include "sim/base/field.h"
+#include "sim/scene.h"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace sim {
 
-/// Free corners are degrees of freedom of their own; slaved corners are interpolated from the nodes of a background
-/// grid of cell size h with trilinear weights (products of linear B-splines, [Z18 eq. 2-3]). Degrees of freedom: free
-/// corners first, in corner order, then the active nodes, body by body: bodies never share a node, so the grid alone
-/// never couples them.
+/// ∂v/∂x at a point: column j is ∂v/∂x_j.   [1/s]
+struct Gradient {
+    Vec3p column[3];
+};
+
+/// Free corners are degrees of freedom of their own; slaved corners, among them all material points, are interpolated
+/// from the nodes of a background grid of cell size h with B-splines [Z18 eq. 2-3]. Degrees of freedom: free corners
+/// first, in corner order, then the active nodes, body by body: bodies never share a node, so the grid alone never
+/// couples them.
 ///
-/// Slaved corners are grouped by the grid cell that holds them: T loads a cell's eight nodes once, Tᵀ sums a cell's
-/// corners in registers before it touches the nodes. Both are gathers in a fixed order, hence deterministic.
+/// Slaved corners are grouped by the lowest node of their stencil: T loads a group's nodes once, Tᵀ sums a group's corners
+/// before it touches the nodes. Both are gathers in a fixed order, hence deterministic.
 class CornerMap {
   public:
-    /// The corners [begin, end) of one body, and its cell size h [m].
+    /// The corners [begin, end) of one body, its cell size h [m] and its kernel.
     struct BodyRange {
         int begin = 0, end = 0;
         double cell_size = 0;
+        Kernel kernel = Kernel::Linear;
     };
 
     /// `free` (#C): whether a corner is free. Throws Error(Diverged) where a body spreads over more than 2^28 cells.
@@ -60,31 +68,83 @@ class CornerMap {
     /// d_i = Σ_c T_ci² k_c: a stand-in for the diagonal of Tᵀ diag(k) T.   k (#C), d (#dofs)
     void apply_squared_transposed(const Field& k, Field& d) const;
 
-  private:
-    struct Cell {
-        std::array<int, 8> nodes;  // degrees of freedom
-        int begin = 0, end = 0;    // its range of slaves
+    /// What stands for ∂w_i/∂x_j in G: the slope of the kernel; its square, for diagonals; or w_i (x_i - x)_j, whose sum
+    /// with v_i is the affine momentum of [JSS15 eq. 10].
+    enum class Factor { Slope, SlopeSquared, Moment };
+
+    /// Slaves [begin, end) of a body, all of the chunk of that number.
+    struct Slaves {
+        int begin = 0, end = 0, chunk = 0;
     };
 
+    /// Work at slaves, values[0] being that of slaves.begin; called for one chunk after the other, in parallel.
+    using AtSlaves = std::function<void(const Slaves& slaves, Gradient* values)>;
+
+    /// `visit` sees G q at the slaves of a body.
+    void visit_gradients(int body, Factor factor, const Field& q, const AtSlaves& visit) const;
+
+    /// sums += Gᵀ A, with A as `fill` sets it at the slaves: node i gets Σ_s A_s ∂w_i.   sums (#dofs)
+    void add_transposed(int body, Factor factor, const AtSlaves& fill, Field& sums) const;
+
+    /// sums += Gᵀ f(G q) in one go; f replaces gradients by what goes back. Factor::Slope.
+    void add_through(int body, const Field& q, const AtSlaves& f, Field& sums) const;
+
+    /// All slaves of a body; `chunk` is the number of chunks.
+    Slaves slaves_of(int body) const;
+
+    /// The corner of each slave.
+    const std::vector<int>& slave_corner() const { return slave_corner_; }
+
+    /// Σ_i w_i (x_i - x)_j² at a slave of a body, the diagonal of D in [JSS15 eq. 8], at least 1e-6 h².   [m²]
+    Vec3p second_moment(int body, int slave) const;
+
+  private:
+    struct Group {
+        int begin = 0, end = 0;  // its slaves
+    };
+
+    /// The slaved corners of one body. A group has (order + 1)³ nodes; the a-th of group k stands, and its sum is kept, at
+    /// first_entry + (k - first_group) (order + 1)³ + a. Where a node's sums are is listed likewise.
+    struct Part {
+        Kernel kernel = Kernel::Linear;
+        double cell_size = 0;
+        int first_group = 0, last_group = 0, first_node = 0, last_node = 0;
+        std::size_t first_entry = 0, first_source = 0;
+    };
+
+    struct Box;  // of cells
+
+    // corner_map_rebuild.cpp
     void rebuild_body(const Field& corners, const BodyRange& body, int index);
-    void number_nodes(const std::array<int, 3>& n_cells_per_axis,
-                      int first_new_cell,
-                      const std::vector<int>& base);
+    Box box_of_slaves(const Field& corners, const BodyRange& body, double shift);
+    void sort_slaves(const Field& corners, const BodyRange& body, const Box& box, double shift);
+    void number_nodes(const Box& box, int n, Part& part);
+
+    // corner_map.cpp
+    template <class S, bool squared>
+    void gather(const Part& part, const Field& f, Field& q) const;
     template <bool squared>
-    void gather(const Field& f, Field& q) const;
+    void gather_all(const Field& f, Field& q) const;
+    template <class S>
+    void pass(
+        const Part& part, Factor factor, const Field* q, const AtSlaves& f, Field* sums) const;
+    template <class S, class Write>
+    void sum_at_nodes(const Part& part, const Write& write) const;
 
     int n_nodes_ = 0;
     std::vector<int> dof_of_corner_, free_corner_, dof_body_;
     Field dof_position_;
-    std::vector<Cell> cells_;
-    std::vector<int> slave_corner_;                     // (#slaves) grouped by cell
-    std::vector<std::array<double, 8>> slave_weights_;  // (#slaves)
-    std::vector<std::array<int, 8>>
-        node_sources_;         // (#nodes) indices 8 cell + a into cell sums, -1 where none
-    mutable Field cell_sums_;  // (8 #cells) scratch of the gathers
+    std::vector<Part> parts_;  // (#bodies)
+    std::vector<Group> groups_;
+    std::vector<int> group_nodes_;  // (#entries) degrees of freedom
+    std::vector<int>
+        node_sources_;  // entries that a node sums, -1 where none; (order + 1)³ a node
+    std::vector<int> slave_corner_;  // (#slaves) grouped
+    Field slave_local_;              // (#slaves) t of Spline
+    mutable Field group_sums_;       // (#entries) scratch of the gathers
 
     // Scratch of rebuild(), kept to avoid allocations in every step.
-    std::vector<int> cell_of_slave_, cell_start_, node_of_, slave_order_;
+    std::vector<int> slave_order_, cell_of_slave_, cell_start_, node_of_, base_;
 };
 
 }  // namespace sim

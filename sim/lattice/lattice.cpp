@@ -122,6 +122,11 @@ Lattice make_lattice(const Body& body, std::vector<std::string>* repairs) {
     lattice.edge = grid.edge;
     lattice.origin = grid.origin;
     set_domains(cubes, body.regions, lattice);
+    for (const FilledCube& cube : cubes) {
+        const Vec3 middle = cube.moment / (cube.filled * samples_per_edge);
+        lattice.filled_centre.push_back(grid.point(
+            cube.cell[0] + middle.x(), cube.cell[1] + middle.y(), cube.cell[2] + middle.z()));
+    }
     set_corners(grid.n, lattice);
     set_corner_shares(grid, solid, lattice);
     const double sample_volume = grid.edge * grid.edge * grid.edge / samples_per_cube;

@@ -16,13 +16,14 @@ namespace {
 // Above this a run would neither fit in memory nor end: a slip of the unit in domain_size, most likely.
 constexpr double most_cubes = 3e8;
 
-/// Adds `count` samples of a region, keeping regions ascending.
-void add_samples(FilledCube& cube, int region, int count) {
+/// Adds `count` samples of a region around `middle`, keeping regions ascending.
+void add_samples(FilledCube& cube, int region, int count, const Vec3& middle) {
     auto at = std::lower_bound(cube.samples.begin(), cube.samples.end(), std::pair(region, 0));
     if (at == cube.samples.end() || at->first != region)
         at = cube.samples.insert(at, {region, 0});
     at->second += count;
     cube.filled += count;
+    cube.moment += count * middle;
 }
 
 /// A cube of samples: all those of a domain, or an eighth, and so on down to one.
@@ -43,7 +44,7 @@ class CubeFiller {
         : grid_(grid), solid_(solid), regions_(regions) {}
 
     FilledCube fill(const std::array<int, 3>& cell) const {
-        FilledCube cube{cell, 0, {}};
+        FilledCube cube{cell, 0, Vec3::Zero(), {}};
         fill(Block{}, Known{}, cube);
         return cube;
     }
@@ -69,7 +70,7 @@ class CubeFiller {
         if (known.region < 0)
             known.region = block.size == 1 ? regions_.at(X) : regions_.of_ball(X, radius);
         if (known.inside && known.region >= 0)
-            add_samples(cube, known.region, block.size * block.size * block.size);
+            add_samples(cube, known.region, block.size * block.size * block.size, middle);
         else
             fill_parts(block, known, cube);
     }

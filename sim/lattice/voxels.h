@@ -25,7 +25,8 @@ inline constexpr int samples_per_cube = samples_per_edge * samples_per_edge * sa
 /// How many of a cube's samples are in the body, by region.
 struct FilledCube {
     std::array<int, 3> cell{0, 0, 0};
-    int filled = 0;  // of samples_per_cube
+    int filled = 0;        // of samples_per_cube
+    Vec3 moment{0, 0, 0};  // sum of their places in the cube, whose edge is samples_per_edge
     std::vector<std::pair<int, int>>
         samples;  // (region, samples of it), regions ascending, none with 0
 };

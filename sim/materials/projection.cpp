@@ -31,6 +31,7 @@ PrincipalLaw principal_law(Model model, double J, double mu, double lambda) {
         case Model::StableNeoHookean:
             return {mu, 0, (lambda + mu) * (J - 1) - mu, lambda + mu};
         case Model::FixedCorotated:
+        case Model::Snow:
             return {2 * mu, -2 * mu, lambda * (J - 1), lambda};
     }
     assets::check(false, "projected_stiffness: the model is known");

@@ -1,0 +1,173 @@
+// How slaved corners are grouped and nodes are numbered.
+#include "assets/base/error.h"
+#include "sim/grid/corner_map.h"
+#include "sim/grid/kernel.h"
+
+#include <cmath>
+
+namespace sim {
+
+namespace {
+
+constexpr double most_cells = 1 << 28;
+
+Vec3p floor_of(const Vec3p& v) {
+    return Vec3p{std::floor(v[0]), std::floor(v[1]), std::floor(v[2]), 0};
+}
+
+}  // namespace
+
+/// Lowest nodes of stencils: the integer coordinates of the first, and how many along each axis.
+struct CornerMap::Box {
+    Vec3p low{};
+    std::array<int, 3> n{0, 0, 0};
+
+    int count() const { return n[0] * n[1] * n[2]; }
+};
+
+void CornerMap::rebuild(const Field& corners,
+                        const std::vector<char>& free,
+                        const std::vector<BodyRange>& bodies) {
+    dof_of_corner_.assign(corners.size(), -1);
+    free_corner_.clear();
+    dof_body_.clear();
+    dof_position_.clear();
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        for (int c = bodies[b].begin; c < bodies[b].end; ++c)
+            if (free[c]) {
+                dof_of_corner_[c] = n_free();
+                free_corner_.push_back(c);
+                dof_body_.push_back(static_cast<int>(b));
+                dof_position_.push_back(corners[c]);
+            }
+    n_nodes_ = 0;
+    parts_.clear();
+    groups_.clear();
+    group_nodes_.clear();
+    slave_corner_.clear();
+    slave_local_.clear();
+    node_sources_.clear();
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        rebuild_body(corners, bodies[b], static_cast<int>(b));
+    group_sums_.resize(group_nodes_.size());
+}
+
+void CornerMap::rebuild_body(const Field& corners, const BodyRange& body, int index) {
+    Part part;
+    part.kernel = body.kernel;
+    part.cell_size = body.cell_size;
+    part.first_group = part.last_group = static_cast<int>(groups_.size());
+    part.first_node = part.last_node = n_nodes_;
+    part.first_entry = group_nodes_.size();
+    part.first_source = node_sources_.size();
+    const auto [n, shift] = visit_spline(body.kernel, [](auto spline) {
+        return std::pair(int(spline.n), double(spline.shift));
+    });
+
+    const Box box = box_of_slaves(corners, body, shift);
+    if (!slave_order_.empty()) {
+        sort_slaves(corners, body, box, shift);
+        part.last_group = static_cast<int>(groups_.size());
+        number_nodes(box, n, part);
+        part.last_node = n_nodes_;
+        dof_body_.resize(n_dofs(), index);
+    }
+    parts_.push_back(part);
+}
+
+CornerMap::Box CornerMap::box_of_slaves(const Field& corners,
+                                        const BodyRange& body,
+                                        double shift) {
+    const double inverse_size = 1 / body.cell_size;
+    Box box;
+    Vec3p high{},
+        sum{};  // not finite where a corner is not: comparisons alone would pass over it
+    slave_order_.clear();
+    for (int c = body.begin; c < body.end; ++c) {
+        if (dof_of_corner_[c] >= 0)
+            continue;
+        const Vec3p cell = floor_of(corners[c] * inverse_size - shift);
+        if (slave_order_.empty())
+            box.low = high = cell;
+        box.low = cell < box.low ? cell : box.low;
+        high = cell > high ? cell : high;
+        sum += cell;
+        slave_order_.push_back(c);
+    }
+    const Vec3p extent = high - box.low + 1.0;
+    if (!(extent[0] * extent[1] * extent[2] < most_cells)
+        || !std::isfinite(sum[0] + sum[1] + sum[2]))
+        throw assets::Error(
+            assets::ErrorKind::Diverged,
+            "a body spreads over more background cells than can be held; it has flown apart");
+    box.n = {int(extent[0]), int(extent[1]), int(extent[2])};
+    return box;
+}
+
+void CornerMap::sort_slaves(const Field& corners,
+                            const BodyRange& body,
+                            const Box& box,
+                            double shift) {
+    // Counting sort by the lowest node of the stencil.
+    const double inverse_size = 1 / body.cell_size;
+    const int n_cells = box.count();
+    cell_start_.assign(n_cells + 1, 0);
+    cell_of_slave_.resize(slave_order_.size());
+    for (std::size_t k = 0; k < slave_order_.size(); ++k) {
+        const Vec3p local = floor_of(corners[slave_order_[k]] * inverse_size - shift) - box.low;
+        const int cell = int(local[0]) + box.n[0] * (int(local[1]) + box.n[1] * int(local[2]));
+        cell_of_slave_[k] = cell;
+        ++cell_start_[cell + 1];
+    }
+    // Occupied cells in order, each with its range of slaves.
+    const int first_slave = static_cast<int>(slave_corner_.size());
+    base_.clear();
+    for (int cell = 0; cell < n_cells; ++cell) {
+        const int begin = cell_start_[cell];
+        cell_start_[cell + 1] += begin;
+        if (cell_start_[cell + 1] > begin) {
+            groups_.push_back({first_slave + begin, first_slave + cell_start_[cell + 1]});
+            base_.push_back(cell);
+        }
+    }
+    slave_corner_.resize(first_slave + slave_order_.size());
+    slave_local_.resize(slave_corner_.size());
+    for (std::size_t k = 0; k < slave_order_.size(); ++k) {
+        const int slave = first_slave + cell_start_[cell_of_slave_[k]]++;
+        const Vec3p scaled = corners[slave_order_[k]] * inverse_size;
+        slave_corner_[slave] = slave_order_[k];
+        // Where the product is not rounded before the difference (a fused instruction) a point on a node may come out a
+        // rounding below it: its weights would be negative, and a node's mass the difference of such.
+        const Vec3p local = scaled - floor_of(scaled - shift), least = Vec3p{} + shift;
+        slave_local_[slave] = local > least ? local : least;
+    }
+}
+
+void CornerMap::number_nodes(const Box& box, int n, Part& part) {
+    const int per_group = n * n * n;
+    const std::array<int, 3> size = {box.n[0] + n - 1, box.n[1] + n - 1, box.n[2] + n - 1};
+    const auto index = [&](int i, int j, int l) { return i + size[0] * (j + size[1] * l); };
+    node_of_.assign(static_cast<std::size_t>(size[0]) * size[1] * size[2], -1);
+    group_nodes_.resize(part.first_entry + base_.size() * per_group);
+    for (std::size_t k = 0; k < base_.size(); ++k) {
+        const int i = base_[k] % box.n[0], j = base_[k] / box.n[0] % box.n[1],
+                  l = base_[k] / (box.n[0] * box.n[1]);
+        for (int a = 0; a < per_group; ++a) {
+            const int x = i + a % n, y = j + a / n % n, z = l + a / (n * n);
+            int& node = node_of_[index(x, y, z)];
+            if (node < 0) {
+                node = n_nodes_++;
+                node_sources_.resize(node_sources_.size() + per_group, -1);
+                dof_position_.push_back((box.low + Vec3p{double(x), double(y), double(z), 0})
+                                        * part.cell_size);
+            }
+            const std::size_t entry = part.first_entry + k * per_group + a;
+            group_nodes_[entry] = n_free() + node;
+            node_sources_[part.first_source
+                          + static_cast<std::size_t>(node - part.first_node) * per_group + a] =
+                static_cast<int>(entry);
+        }
+    }
+}
+
+}  // namespace sim

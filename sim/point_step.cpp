@@ -1,0 +1,163 @@
+// What material points and affine transfers add to a step.
+#include "sim/base/parallel.h"
+#include "sim/stepper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sim {
+
+namespace {
+
+constexpr int chunk = 8192;
+constexpr double noise =
+    1e-8;  // of the kinetic energy: strain energy too small to tell a frequency
+constexpr double most_cells = 0.6;  // that two parts may near each other by in a step
+
+}  // namespace
+
+std::vector<GridEnergy*> Stepper::make_points() {
+    std::vector<GridEnergy*> energies;
+    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b) {
+        const AssembledBody& body = assembly_.bodies[b];
+        points_.emplace_back(
+            body.points ? new PointEnergy(
+                map_, static_cast<int>(b), body.begin, body.cell_size, *body.points)
+                        : nullptr);
+        if (points_.back())
+            energies.push_back(points_.back().get());
+    }
+    return energies;
+}
+
+void Stepper::start(State& state) {
+    for (const AssembledBody& body : assembly_.bodies)
+        state.points.emplace_back(body.points ? body.points->size() : 0);
+    if (scene_.solver.transfer != Transfer::Apic)
+        return;
+    // Of the rotation that a body starts with: B = [spin]x D.
+    state.affine.assign(state.x.size(), Gradient{});
+    prescribe(scene_, assembly_, state.time, state.time, prescribed_);
+    choose_free_corners(state.x);
+    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b) {
+        const auto [begin, end, n_chunks] = map_.slaves_of(static_cast<int>(b));
+        for (int s = begin; s < end; ++s) {
+            const Vec3p D = map_.second_moment(static_cast<int>(b), s);
+            for (int j = 0; j < 3; ++j)
+                state.affine[map_.slave_corner()[s]].column[j] =
+                    D[j] * padded(scene_.bodies[b].spin.cross(Vec3::Unit(j)));
+        }
+    }
+}
+
+void Stepper::add_affine_momentum(const State& state) {
+    // Node i gets Σ_p w_ip m_p B_p D_p⁻¹ (x_i - x_p). [JSS15 eq. 8]
+    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b) {
+        const int body = static_cast<int>(b);
+        map_.add_transposed(
+            body,
+            CornerMap::Factor::Moment,
+            [&](const CornerMap::Slaves& at, Gradient* values) {
+                for (int s = at.begin; s < at.end; ++s) {
+                    const int c = map_.slave_corner()[s];
+                    const Vec3p D = map_.second_moment(body, s);
+                    for (int j = 0; j < 3; ++j)
+                        values[s - at.begin].column[j] =
+                            assembly_.mass[c] * state.affine[c].column[j] / D[j];
+                }
+            },
+            q_n_);
+    }
+}
+
+void Stepper::commit_affine(State& state, const Field& q) const {
+    if (state.affine.empty())
+        return;
+    for (const int c : map_.free_corner())
+        state.affine[c] = {};
+    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b)
+        map_.visit_gradients(static_cast<int>(b),
+                             CornerMap::Factor::Moment,
+                             q,
+                             [&](const CornerMap::Slaves& at, Gradient* values) {
+                                 for (int s = at.begin; s < at.end; ++s)
+                                     state.affine[map_.slave_corner()[s]] =
+                                         values[s - at.begin];
+                             });
+}
+
+void Stepper::set_node_reactions(const std::function<Vec3p(int)>& force_on) {
+    node_reactions_.clear();
+    for (const PinnedNode& node : pinned_nodes_) {
+        const Vec3p force = force_on(node.dof) * (Vec3p{1, 1, 1, 0} - node.is_free);
+        node_reactions_.push_back(
+            {node.pin, unpadded(map_.dof_position()[node.dof]), unpadded(force)});
+    }
+}
+
+double Stepper::add_grid_gradient(const Field& q, double dt, Field& gradient) {
+    double energy = 0;
+    for (const auto& points : points_)
+        if (points)
+            energy += points->add_gradient(q, dt, gradient);
+    return energy;
+}
+
+void Stepper::add_start_gradient(Field& gradient) {
+    for (const auto& points : points_)
+        if (points)
+            points->add_start_gradient(gradient);
+}
+
+double Stepper::seen_frequency_of_points() {
+    // As for corners, on the degrees of freedom: how their inner forces change over the way dt q.
+    const Field& is_free = potential_.step().is_free;
+    if (map_.is_identity())
+        return 0;
+    const Vec3p sums = sum_chunks(map_.n_dofs(), chunk, [&](int begin, int end) {
+        Vec3p sum{};
+        for (int i = begin; i < end; ++i) {
+            const Vec3p dx = 2 * dt_hat_ * q_moved_[i];
+            const Vec3p dg = (grid_gradient_[i] - start_gradient_[i]) * is_free[i];
+            sum += Vec3p{
+                dot(dg, dg) * inverse_mass_[i], dot(dx, dg), dof_mass_[i][0] * dot(dx, dx), 0};
+        }
+        return sum;
+    });
+    const double force = sums[0], strain = sums[1], motion = sums[2];
+    return strain * dt_hat_ * dt_hat_ > noise * motion ? std::sqrt(force / strain) : 0;
+}
+
+double Stepper::relative_limit(const State& state) const {
+    // Parts that near each other by more than a cell would not see each other on the grid. Within a body of points, and
+    // between it and others, speeds are those about the mean of each body.
+    const std::size_t n = assembly_.bodies.size();
+    if (std::none_of(points_.begin(), points_.end(), [](const auto& points) {
+            return points != nullptr;
+        }))
+        return std::numeric_limits<double>::infinity();
+    std::vector<Vec3p> mean(n);
+    std::vector<double> deviation(n, 0);
+    for (std::size_t b = 0; b < n; ++b) {
+        const auto& [begin, end, cell_size, kernel] = ranges_[b];
+        for (int c = begin; c < end; ++c)
+            mean[b] += state.v[c] / double(end - begin);
+        for (int c = begin; c < end; ++c) {
+            const Vec3p about = state.v[c] - mean[b];
+            deviation[b] = std::max(deviation[b], std::sqrt(dot(about, about)));
+        }
+    }
+    double limit = std::numeric_limits<double>::infinity();
+    for (std::size_t a = 0; a < n; ++a)
+        for (std::size_t b = 0; b < n; ++b) {
+            if (!points_[a])
+                continue;
+            const Vec3p between = mean[a] - mean[b];
+            const double speed = std::sqrt(dot(between, between)) + deviation[a] + deviation[b];
+            limit = std::min(limit, most_cells * ranges_[a].cell_size / speed);
+        }
+    return limit;
+}
+
+}  // namespace sim

@@ -1,0 +1,216 @@
+#include "sim/points/point_energy.h"
+
+#include "sim/base/parallel.h"
+#include "sim/materials/law.h"
+#include "sim/points/plasticity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sim {
+
+namespace {
+
+constexpr int point_chunk = 1024;
+
+/// sup Σ_a w'_a²/w_a of a spline, in 1/cells².
+double sharpest(Kernel kernel) {
+    switch (kernel) {
+        case Kernel::Quadratic:
+            return 6;
+        case Kernel::Cubic:
+            return 3.04;
+        default:
+            return std::numeric_limits<double>::infinity();
+    }
+}
+
+Matrix3<double> matrix_of(const Gradient& gradient) {
+    Matrix3<double> result;
+    for (int k = 0; k < 9; ++k)
+        result.m[k] = gradient.column[k / 3][k % 3];
+    return result;
+}
+
+/// (1 + dt D) F.
+Matrix3<double> moved(const Matrix3<double>& F, const Gradient& D, double dt) {
+    Matrix3<double> result = product(matrix_of(D), F);
+    for (int k = 0; k < 9; ++k)
+        result.m[k] = F.m[k] + dt * result.m[k];
+    return result;
+}
+
+/// The number of a chunk's first batch: batches start at its first slave, and the last of a chunk may be short.
+int first_batch(const CornerMap::Slaves& all, const CornerMap::Slaves& chunk) {
+    return (chunk.begin - all.begin) / lane_count + chunk.chunk;
+}
+
+Model law_of(Model model) {
+    return model == Model::Snow ? Model::FixedCorotated : model;
+}
+
+}  // namespace
+
+PointEnergy::PointEnergy(const CornerMap& map,
+                         int body,
+                         int first_corner,
+                         double cell_size,
+                         const MaterialPoints& points)
+    : map_(map),
+      body_(body),
+      first_corner_(first_corner),
+      cell_size_(cell_size),
+      points_(points),
+      mu_(points.mu),
+      lambda_(points.lambda),
+      F_next_(points.size()) {
+    for (int p = 0; p < points.size(); ++p) {
+        law_.push_back(static_cast<unsigned char>(law_of(points.model[points.region[p]])));
+        scale_ += points.volume[p] * (points.lambda[p] + 2 * points.mu[p]);
+    }
+}
+
+void PointEnergy::begin_step(const PointState& state) {
+    state_ = &state;
+    for (int p = 0; p < points_.size(); ++p) {
+        if (!points_.is_snow(p))
+            continue;
+        const double harder =
+            std::exp(points_.snow[points_.region[p]].hardening * (1 - state.J_plastic[p]));
+        mu_[p] = harder * points_.mu[p];
+        lambda_[p] = harder * points_.lambda[p];
+    }
+}
+
+PointsOfSlaves PointEnergy::slaves() const {
+    return {map_.slave_corner().data(),
+            first_corner_,
+            points_.volume.data(),
+            mu_.data(),
+            lambda_.data(),
+            law_.data(),
+            state_->F.data()};
+}
+
+double PointEnergy::add_gradient(const Field& q, double dt, Field& gradient) {
+    const PointsOfSlaves points = slaves();
+    chunk_energy_.assign(map_.slaves_of(body_).chunk, 0);
+    map_.add_through(
+        body_,
+        q,
+        [&](const CornerMap::Slaves& at, Gradient* values) {
+            chunk_energy_[at.chunk] =
+                take_stresses(points, {at.begin, at.end}, dt, values, F_next_.data());
+        },
+        gradient);
+    double energy = 0;
+    for (const double part : chunk_energy_)
+        energy += part;
+    return energy;
+}
+
+double PointEnergy::add_start_gradient(Field& gradient) {
+    const PointsOfSlaves points = slaves();
+    chunk_energy_.assign(map_.slaves_of(body_).chunk, 0);
+    map_.add_transposed(
+        body_,
+        CornerMap::Factor::Slope,
+        [&](const CornerMap::Slaves& at, Gradient* values) {
+            std::fill(values, values + (at.end - at.begin), Gradient{});
+            chunk_energy_[at.chunk] =
+                take_stresses(points, {at.begin, at.end}, 0, values, F_next_.data());
+        },
+        gradient);
+    double energy = 0;
+    for (const double part : chunk_energy_)
+        energy += part;
+    return energy;
+}
+
+void PointEnergy::linearize(const Field& q, double dt, bool project) {
+    const PointsOfSlaves points = slaves();
+    const CornerMap::Slaves all = map_.slaves_of(body_);
+    const int n_batches = (all.end - all.begin) / lane_count + all.chunk + 1;
+    stiffness_.resize(n_batches);
+    weight_.resize(n_batches);
+    map_.visit_gradients(
+        body_, CornerMap::Factor::Slope, q, [&](const CornerMap::Slaves& at, Gradient* values) {
+            const int b = first_batch(all, at);
+            take_stiffness(
+                points, {at.begin, at.end}, dt, values, project, &stiffness_[b], &weight_[b]);
+        });
+}
+
+void PointEnergy::add_product(const Field& u, Field& product) const {
+    const CornerMap::Slaves all = map_.slaves_of(body_);
+    map_.add_through(
+        body_,
+        u,
+        [&](const CornerMap::Slaves& at, Gradient* values) {
+            const int b = first_batch(all, at);
+            multiply(&stiffness_[b], &weight_[b], {at.begin, at.end}, values);
+        },
+        product);
+}
+
+void PointEnergy::add_diagonal(Field& diagonal) const {
+    const CornerMap::Slaves all = map_.slaves_of(body_);
+    map_.add_transposed(
+        body_,
+        CornerMap::Factor::SlopeSquared,
+        [&](const CornerMap::Slaves& at, Gradient* values) {
+            const int b = first_batch(all, at);
+            take_diagonal(&stiffness_[b], &weight_[b], {at.begin, at.end}, values);
+        },
+        diagonal);
+}
+
+void PointEnergy::advance(const Field& q, double dt, PointState& state) {
+    map_.visit_gradients(
+        body_, CornerMap::Factor::Slope, q, [&](const CornerMap::Slaves& at, Gradient* values) {
+            for (int s = at.begin; s < at.end; ++s) {
+                const int p = map_.slave_corner()[s] - first_corner_;
+                F_next_[p] = moved(state.F[p], values[s - at.begin], dt);
+            }
+        });
+    accept(state);
+}
+
+void PointEnergy::accept(PointState& state) {
+    std::swap(state.F, F_next_);
+    for_chunks(points_.size(), point_chunk, [&](int begin, int end) {
+        for (int p = begin; p < end; ++p)
+            if (points_.is_snow(p))
+                yield(points_.snow[points_.region[p]], state.F[p], state.J_plastic[p]);
+    });
+}
+
+double PointEnergy::highest_frequency(Kernel kernel) const {
+    double most = 0;
+    for (int p = 0; p < points_.size(); ++p)
+        most =
+            std::max(most, (3 * lambda_[p] + 2 * mu_[p]) * points_.volume[p] / points_.mass[p]);
+    return std::sqrt(most * sharpest(kernel)) / cell_size_;
+}
+
+double PointEnergy::energy(const PointState& state) const {
+    double sum = 0;
+    for (int p = 0; p < points_.size(); ++p)
+        sum += points_.volume[p]
+               * visit(
+                   static_cast<Model>(law_[p]), [&](auto law) __attribute__((always_inline)) {
+                       return law.energy_density(state.F[p], mu_[p], lambda_[p]);
+                   });
+    return sum;
+}
+
+PointEnergy::SmallestJ PointEnergy::smallest_trial_J() const {
+    SmallestJ smallest{std::numeric_limits<double>::infinity(), -1};
+    for (int p = 0; p < points_.size(); ++p)
+        if (const double J = determinant(F_next_[p]); !(J >= smallest.J))
+            smallest = {J, p};
+    return smallest;
+}
+
+}  // namespace sim

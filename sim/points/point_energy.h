@@ -1,0 +1,79 @@
+// The elastic energy of a body of material points, as a function of how the grid moves them.
+#pragma once
+
+#include "sim/grid/corner_map.h"
+#include "sim/grid/grid_energy.h"
+#include "sim/points/material_points.h"
+#include "sim/points/point_laws.h"
+
+#include <vector>
+
+namespace sim {
+
+/// Φ(dt q) = Σ_p V_p Ψ((1 + dt ∇v_p) F_p),  ∇v_p = Σ_i v_i ∂w_ip/∂x with the stencils of the start of the step, so
+/// ∂Φ/∂u_i = Σ_p V_p P F_pᵀ ∂w_ip/∂x [SSC13 §6]. The same for any number of threads.
+class PointEnergy : public GridEnergy {
+  public:
+    /// The points are the corners from `first_corner` of body `body` of the map; `map` and `points` outlive the energy.
+    PointEnergy(const CornerMap& map,
+                int body,
+                int first_corner,
+                double cell_size,
+                const MaterialPoints& points);
+
+    /// Takes F of the start of the step, and the moduli that snow has by now; `state` outlives the step.
+    void begin_step(const PointState& state);
+
+    double add_gradient(const Field& q, double dt, Field& gradient) override;
+    void linearize(const Field& q, double dt, bool project) override;
+    void add_product(const Field& u, Field& product) const override;
+    void add_diagonal(Field& diagonal) const override;
+
+    double scale() const override { return scale_; }
+
+    double length() const override { return cell_size_; }
+
+    /// The same at the start of the step, where nothing has moved.
+    double add_start_gradient(Field& gradient);
+
+    /// Moves F by the velocities of the step, and lets snow yield.
+    void advance(const Field& q, double dt, PointState& state);
+
+    /// The same where q is that of the last add_gradient().
+    void accept(PointState& state);
+
+    /// A bound of the frequencies w that the grid can swing with, from moduli at rest and today's hardening: of one point's
+    /// stiffness over the mass that it lends to its nodes,
+    ///   w² <= (3λ+2μ)/rho max Σ_a w'_a²/w_a / h²,   the sum at most 6 and 3.04 for quadratic and cubic splines
+    /// (Irons: no assembly swings faster than its fastest part). Infinite for linear ones, as the sum is.   [rad/s]
+    double highest_frequency(Kernel kernel) const;
+
+    /// Σ_p V_p Ψ(F_p) of a state [J].
+    double energy(const PointState& state) const;
+
+    struct SmallestJ {
+        double J = 0;
+        int point = -1;
+    };
+
+    /// Of the elastic F of the last add_gradient().
+    SmallestJ smallest_trial_J() const;
+
+  private:
+    PointsOfSlaves slaves() const;
+
+    const CornerMap& map_;
+    int body_, first_corner_;
+    double cell_size_;
+    const MaterialPoints& points_;
+    std::vector<unsigned char> law_;   // (#P)
+    std::vector<double> mu_, lambda_;  // (#P) of this step [Pa]
+    double scale_ = 0;
+    const PointState* state_ = nullptr;
+    std::vector<Matrix3<double>> F_next_;    // (#P) of the last add_gradient()
+    std::vector<double> chunk_energy_;       // (#chunks)
+    std::vector<PointStiffness> stiffness_;  // (#batches)
+    LaneVector weight_;                      // (#batches) [J]
+};
+
+}  // namespace sim

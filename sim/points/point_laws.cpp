@@ -1,0 +1,267 @@
+#include "sim/points/point_laws.h"
+
+#include "sim/materials/law.h"
+#include "sim/materials/projection.h"
+
+#include <algorithm>
+
+// Compiled for two instruction sets and chosen at run time; both do the same operations in every lane.
+#define SUPPLE_LANES __attribute__((target_clones("arch=x86-64-v4", "default")))
+
+namespace sim {
+
+namespace {
+
+#define ALWAYS_INLINE [[gnu::always_inline]] inline
+
+struct Batch {
+    Matrix3<Lanes> F_n;
+    alignas(64) Lanes volume, mu, lambda, law;
+    unsigned laws;  // bit m set where a point has model m
+    int n;          // points; the lanes above have no volume and rest undeformed
+};
+
+ALWAYS_INLINE Matrix3<Lanes> identity() {
+    Matrix3<Lanes> I;
+    for (int k = 0; k < 9; ++k)
+        I.m[k] = uniform<Lanes>(k % 4 == 0 ? 1 : 0);
+    return I;
+}
+
+ALWAYS_INLINE void load(const PointsOfSlaves& points,
+                        const SlaveRange& range,
+                        int b,
+                        Batch& batch) {
+    const int first = range.begin + lane_count * b;
+    batch.n = std::min(lane_count, range.end - first);
+    batch.laws = 0;
+    if (batch.n < lane_count) {
+        batch.F_n = identity();
+        batch.volume = batch.lambda = Lanes{};
+        batch.mu = uniform<Lanes>(1);
+        batch.law = uniform<Lanes>(static_cast<double>(Model::NeoHookean));
+        batch.laws = 1u << static_cast<int>(Model::NeoHookean);
+    }
+    for (int l = 0; l < batch.n; ++l) {
+        const int p = points.corner[first + l] - points.first_corner;
+        for (int k = 0; k < 9; ++k)
+            batch.F_n.m[k][l] = points.F_n[p].m[k];
+        batch.volume[l] = points.volume[p];
+        batch.mu[l] = points.mu[p];
+        batch.lambda[l] = points.lambda[p];
+        batch.law[l] = points.law[p];
+        batch.laws |= 1u << points.law[p];
+    }
+}
+
+ALWAYS_INLINE Matrix3<Lanes> load(const Gradient* values, int n) {
+    Matrix3<Lanes> D;
+    if (n < lane_count)
+        D = {};
+    for (int l = 0; l < n; ++l)
+        for (int k = 0; k < 9; ++k)
+            D.m[k][l] = values[l].column[k / 3][k % 3];
+    return D;
+}
+
+ALWAYS_INLINE void store(const Matrix3<Lanes>& A, int n, Gradient* values) {
+    for (int l = 0; l < n; ++l)
+        for (int j = 0; j < 3; ++j)
+            values[l].column[j] = Vec3p{A.m[3 * j][l], A.m[3 * j + 1][l], A.m[3 * j + 2][l], 0};
+}
+
+/// A Bᵀ.
+ALWAYS_INLINE Matrix3<Lanes> product_transposed(const Matrix3<Lanes>& A,
+                                                const Matrix3<Lanes>& B) {
+    Matrix3<Lanes> result;
+#pragma GCC unroll 9
+    for (int n = 0; n < 9; ++n) {
+        const int i = n % 3, j = n / 3;
+        result.m[n] = A.m[i] * B.m[j] + A.m[3 + i] * B.m[3 + j] + A.m[6 + i] * B.m[6 + j];
+    }
+    return result;
+}
+
+ALWAYS_INLINE Matrix3<Lanes> moved(const Matrix3<Lanes>& F_n,
+                                   const Matrix3<Lanes>& D,
+                                   double dt) {
+    Matrix3<Lanes> F = product(D, F_n);
+    for (int k = 0; k < 9; ++k)
+        F.m[k] = F_n.m[k] + dt * F.m[k];
+    return F;
+}
+
+/// Positive in the lanes of a law.
+ALWAYS_INLINE Lanes where_law(const Batch& batch, Model model) {
+    const Lanes difference = batch.law - static_cast<double>(model);
+    return 0.5 - difference * difference;
+}
+
+template <class Law>
+ALWAYS_INLINE void take_law(
+    const Batch& batch, Model model, const Matrix3<Lanes>& F, Lanes& psi, Matrix3<Lanes>& P) {
+    const unsigned bit = 1u << static_cast<int>(model);
+    if (!(batch.laws & bit))
+        return;
+    Matrix3<Lanes> P_law;
+    const Lanes psi_law = Law::energy_and_first_piola(F, batch.mu, batch.lambda, P_law);
+    if (batch.laws == bit) {
+        psi = psi_law;
+        P = P_law;
+        return;
+    }
+    const Lanes is_law = where_law(batch, model);
+    psi = select_positive(is_law, psi_law, psi);
+    for (int k = 0; k < 9; ++k)
+        P.m[k] = select_positive(is_law, P_law.m[k], P.m[k]);
+}
+
+template <class Law>
+ALWAYS_INLINE void take_law_stiffness(const Batch& batch,
+                                      Model model,
+                                      const Matrix3<Lanes>& F,
+                                      Lanes* A) {
+    if (!(batch.laws & 1u << static_cast<int>(model)))
+        return;
+    alignas(64) Lanes A_law[packed_size];
+    Law::stiffness(F, uniform<Lanes>(1), Lanes(batch.lambda / batch.mu), A_law);
+    const Lanes is_law = where_law(batch, model);
+    for (int k = 0; k < packed_size; ++k)
+        A[k] = select_positive(is_law, A_law[k], A[k]);
+}
+
+/// What a change of F_n's columns does seen from ∇v: A_(ij)(kl) = Σ_ab F_ja F_lb C_(ia)(kb).
+ALWAYS_INLINE void see_from_gradients(const Matrix3<Lanes>& F, const Lanes* C, FloatLanes* A) {
+    for (int i = 0; i < 3; ++i)
+        for (int k = i; k < 3; ++k) {
+            Matrix3<Lanes> block;
+            for (int b = 0; b < 3; ++b)
+                for (int a = 0; a < 3; ++a)
+                    block.m[3 * b + a] = C[packed(3 * a + i, 3 * b + k)];
+            const Matrix3<Lanes> seen = product(F, product_transposed(block, F));
+            for (int l = 0; l < 3; ++l)
+                for (int j = 0; j < 3; ++j)
+                    A[packed(3 * j + i, 3 * l + k)] =
+                        __builtin_convertvector(seen.m[3 * l + j], FloatLanes);
+        }
+}
+
+/// Apart from the loops over lanes: it runs on scalars, seldom, and reads Eigen.
+[[gnu::noinline]] void project(const Batch& batch, const Matrix3<Lanes>& F, Lanes* C) {
+    for (int l = 0; l < batch.n; ++l) {
+        Mat3 F_l;
+        for (int k = 0; k < 9; ++k)
+            F_l(k % 3, k / 3) = F.m[k][l];
+        const auto model = static_cast<Model>(static_cast<int>(batch.law[l]));
+        const Mat9 projected =
+            projected_stiffness(model, F_l, 1, batch.lambda[l] / batch.mu[l]);
+        for (int r = 0; r < 9; ++r)
+            for (int c = r; c < 9; ++c)
+                C[packed(r, c)][l] = projected(r, c);
+    }
+}
+
+}  // namespace
+
+SUPPLE_LANES
+double take_stresses(const PointsOfSlaves& points,
+                     const SlaveRange& range,
+                     double dt,
+                     Gradient* values,
+                     Matrix3<double>* F_next) {
+    alignas(64) Lanes energy{};
+    Batch batch;
+    for (int b = 0; b < range.n_batches(); ++b) {
+        load(points, range, b, batch);
+        Gradient* const here = values + lane_count * b;
+        const Matrix3<Lanes> F = moved(batch.F_n, load(here, batch.n), dt);
+
+        Lanes psi{};
+        Matrix3<Lanes> P{};
+        take_law<NeoHookean>(batch, Model::NeoHookean, F, psi, P);
+        take_law<StableNeoHookean>(batch, Model::StableNeoHookean, F, psi, P);
+        take_law<FixedCorotated>(batch, Model::FixedCorotated, F, psi, P);
+        energy += batch.volume * psi;
+
+        Matrix3<Lanes> A = product_transposed(P, batch.F_n);
+        for (int k = 0; k < 9; ++k)
+            A.m[k] = batch.volume * A.m[k];
+        store(A, batch.n, here);
+        for (int l = 0; l < batch.n; ++l) {
+            Matrix3<double>& next =
+                F_next[points.corner[range.begin + lane_count * b + l] - points.first_corner];
+            for (int k = 0; k < 9; ++k)
+                next.m[k] = F.m[k][l];
+        }
+    }
+    double sum = 0;
+    for (int l = 0; l < lane_count; ++l)
+        sum += energy[l];
+    return sum;
+}
+
+SUPPLE_LANES
+void take_stiffness(const PointsOfSlaves& points,
+                    const SlaveRange& range,
+                    double dt,
+                    const Gradient* values,
+                    bool projected,
+                    PointStiffness* stiffness,
+                    Lanes* weight) {
+    Batch batch;
+    for (int b = 0; b < range.n_batches(); ++b) {
+        load(points, range, b, batch);
+        const Matrix3<Lanes> F = moved(batch.F_n, load(values + lane_count * b, batch.n), dt);
+        alignas(64) Lanes C[packed_size] = {};
+        take_law_stiffness<NeoHookean>(batch, Model::NeoHookean, F, C);
+        take_law_stiffness<StableNeoHookean>(batch, Model::StableNeoHookean, F, C);
+        take_law_stiffness<FixedCorotated>(batch, Model::FixedCorotated, F, C);
+        if (projected)
+            project(batch, F, C);
+        see_from_gradients(batch.F_n, C, stiffness[b].A);
+        weight[b] = batch.volume * batch.mu;
+    }
+}
+
+SUPPLE_LANES
+void multiply(const PointStiffness* stiffness,
+              const Lanes* weight,
+              const SlaveRange& range,
+              Gradient* values) {
+    for (int b = 0; b < range.n_batches(); ++b) {
+        Gradient* const here = values + lane_count * b;
+        const int n = std::min(lane_count, range.end - range.begin - lane_count * b);
+        const Matrix3<Lanes> D = load(here, n);
+        Matrix3<Lanes> result{};
+#pragma GCC unroll 9
+        for (int r = 0; r < 9; ++r)
+#pragma GCC unroll 9
+            for (int c = r; c < 9; ++c) {
+                const Lanes A = __builtin_convertvector(stiffness[b].A[packed(r, c)], Lanes);
+                result.m[r] += A * D.m[c];
+                if (c > r)
+                    result.m[c] += A * D.m[r];
+            }
+        for (int k = 0; k < 9; ++k)
+            result.m[k] = weight[b] * result.m[k];
+        store(result, n, here);
+    }
+}
+
+SUPPLE_LANES
+void take_diagonal(const PointStiffness* stiffness,
+                   const Lanes* weight,
+                   const SlaveRange& range,
+                   Gradient* values) {
+    for (int b = 0; b < range.n_batches(); ++b) {
+        const int n = std::min(lane_count, range.end - range.begin - lane_count * b);
+        Matrix3<Lanes> diagonal;
+        for (int k = 0; k < 9; ++k) {
+            const Lanes entry = __builtin_convertvector(stiffness[b].A[packed(k, k)], Lanes);
+            diagonal.m[k] = weight[b] * select_positive(entry, entry, Lanes(-entry));
+        }
+        store(diagonal, n, values + lane_count * b);
+    }
+}
+
+}  // namespace sim

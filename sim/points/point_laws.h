@@ -1,0 +1,61 @@
+// The laws at material points, eight points side by side.
+#pragma once
+
+#include "sim/grid/corner_map.h"
+#include "sim/materials/lane_vector.h"
+
+#include <vector>
+
+namespace sim {
+
+/// Points of a body in the order in which the grid visits them. Point of slave s: corner[s] - first_corner.
+struct PointsOfSlaves {
+    const int* corner = nullptr;
+    int first_corner = 0;
+    const double *volume = nullptr, *mu = nullptr, *lambda = nullptr;  // (#P) [m³], [Pa]
+    const unsigned char* law = nullptr;                                // (#P) Model as a number
+    const Matrix3<double>* F_n = nullptr;  // (#P) at the start of the step
+};
+
+/// A range of slaves of one body; batches of eight start at its first.
+struct SlaveRange {
+    int begin = 0, end = 0;
+
+    int n_batches() const { return (end - begin + lane_count - 1) / lane_count; }
+};
+
+/// ∂P/∂F seen from the velocity gradients, of a batch: what δ(dt ∇v) does to P F_nᵀ, over V mu.
+struct PointStiffness {
+    FloatLanes A[45];  // upper triangle, see packed()
+};
+
+/// With F = (1 + dt ∇v) F_n from the gradients in `values`, sets F_next (#P) to F, replaces `values` by V P(F) F_nᵀ and
+/// returns Σ V Ψ(F) [J], +infinity where a law forbids F.
+double take_stresses(const PointsOfSlaves& points,
+                     const SlaveRange& range,
+                     double dt,
+                     Gradient* values,
+                     Matrix3<double>* F_next);
+
+/// Stiffness at F = (1 + dt ∇v) F_n of each batch, and V mu of its points [J]; `project`: positive semi-definite.
+void take_stiffness(const PointsOfSlaves& points,
+                    const SlaveRange& range,
+                    double dt,
+                    const Gradient* values,
+                    bool project,
+                    PointStiffness* stiffness,
+                    Lanes* weight);
+
+/// Replaces gradients δ∇u by δ(V P F_nᵀ).
+void multiply(const PointStiffness* stiffness,
+              const Lanes* weight,
+              const SlaveRange& range,
+              Gradient* values);
+
+/// Sets entry (i, j) of `values` to the stiffness of the (i, j) component against itself.
+void take_diagonal(const PointStiffness* stiffness,
+                   const Lanes* weight,
+                   const SlaveRange& range,
+                   Gradient* values);
+
+}  // namespace sim
