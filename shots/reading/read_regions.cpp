@@ -9,7 +9,8 @@ const std::map<std::string, sim::Model>& models() {
     static const std::map<std::string, sim::Model> words{
         {"neo-hookean", sim::Model::NeoHookean},
         {"stable-neo-hookean", sim::Model::StableNeoHookean},
-        {"fixed-corotated", sim::Model::FixedCorotated}};
+        {"fixed-corotated", sim::Model::FixedCorotated},
+        {"snow", sim::Model::Snow}};
     return words;
 }
 
@@ -18,6 +19,17 @@ std::string word_of(sim::Model model) {
         if (value == model)
             return word;
     return {};
+}
+
+/// Stretches beyond the limits stay; at a limit of 1 a point could be squashed to nothing.
+void read_snow(TableReader& table, sim::SnowOptions& snow) {
+    snow.hardening = table.number("hardening", Dimension::Number, not_negative, snow.hardening);
+    snow.compression_limit = table.number("compression_limit",
+                                          Dimension::Number,
+                                          {.above = 0, .below = 1},
+                                          snow.compression_limit);
+    snow.stretch_limit =
+        table.number("stretch_limit", Dimension::Number, positive, snow.stretch_limit);
 }
 
 void warn_of_odd_values(TableReader& table, const sim::Region& region) {
@@ -54,8 +66,7 @@ sim::Region read_region(TableReader table, const sim::Region* before) {
                                              "mooney-rivlin",
                                              "ogden",
                                              "separable",
-                                             "linear-orthotropic",
-                                             "snow"},
+                                             "linear-orthotropic"},
                                             word_of(region.model));
     region.young_modulus = table.number(
         "young_modulus", Dimension::Pressure, positive, inherited(&sim::Region::young_modulus));
@@ -65,6 +76,8 @@ sim::Region read_region(TableReader table, const sim::Region* before) {
                                         inherited(&sim::Region::poisson_ratio));
     region.density =
         table.number("density", Dimension::Density, positive, inherited(&sim::Region::density));
+    if (region.model == sim::Model::Snow)
+        read_snow(table, region.snow);
     region.color = table.color("color", region.color);
     warn_of_odd_values(table, region);
     table.finish();

@@ -12,8 +12,21 @@
 
 namespace shots {
 
+/// What points cannot do, for messages.
+inline constexpr const char* points_without_bdf2 =
+    "'steps' = 'bdf2' cannot move points: use implicit, semi_implicit or explicit";
+inline constexpr const char* points_without_linear_kernel =
+    "explicit steps of points need a quadratic or cubic kernel: a linear one gives full forces "
+    "to nodes of next to no mass";
+
 /// [solver]
 sim::SolverOptions read_solver(TableReader table);
+
+/// method, one of the words of [solver]; empty where there is none and `usual` is empty.
+std::optional<sim::Method> read_method(TableReader& table, const std::string& usual);
+
+/// kernel; empty where there is none.
+std::optional<sim::Kernel> read_kernel(TableReader& table);
 
 /// The words that name a shape: box, sphere, cylinder, capsule, torus.
 const std::vector<std::string>& shape_words();
@@ -40,7 +53,10 @@ std::vector<sim::Region> read_regions(TableReader& body);
 using Looks = std::map<std::pair<std::string, std::string>, render::Look>;
 
 /// All [body.NAME]; the looks of their skins go into `looks`. A body without a skin gets one named "self".
-std::vector<sim::Body> read_bodies(TableReader& root, Looks& looks);
+/// `solver` decides what a body that says nothing of its method is made of, and with which steps that goes together.
+std::vector<sim::Body> read_bodies(TableReader& root,
+                                   const sim::SolverOptions& solver,
+                                   Looks& looks);
 
 /// Reports a body whose rest shape reaches outside the world, a box of ±1000 m, or has more domains than memory
 /// could hold; and mesh files that cannot be read.

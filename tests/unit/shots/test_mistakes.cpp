@@ -148,16 +148,49 @@ TEST_CASE("wrong values are told with what is allowed") {
 
 TEST_CASE("words of features to come are told apart from mistakes") {
     check_single_mistake(GENERATE(values<Case>({
-        {"\"enriched\"", "\"mpm\"", "8:10: ", "not available yet"},
         {"\"enriched\"", "\"auto\"", "8:10: ", "not available yet"},
-        {"dt     = \"1 ms\"", "kernel = \"cubic\"", "9:10: ", "not available yet"},
         {"dt     = \"1 ms\"", "quadrature = \"eight_point\"", "9:14: ", "not available yet"},
         {"dt     = \"1 ms\"", "elements = \"tet\"", "9:12: ", "not available yet"},
         {"dt     = \"1 ms\"", "tolerance = \"1%\"", "9:13: ", "not available yet"},
-        {"density = 1000", "density = 1000\nmodel = \"snow\"", "21:9: ", "not available yet"},
         {"size = [64, 36]", "images = [\"exr\"]", "41:11: ", "not available yet"},
         {"size = [64, 36]", "renderer = \"raster\"", "41:12: ", "not available yet"},
     })));
+}
+
+TEST_CASE("points cannot do everything") {
+    check_single_mistake(GENERATE(values<Case>({
+        {"\"enriched\"", "\"mpm\"\nsteps = \"bdf2\"", "9:9: ", "bdf2"},
+        {"\"enriched\"",
+         "\"mpm\"\nsteps = \"explicit\"\nkernel = \"linear\"",
+         "10:10: ",
+         "next to no mass"},
+        {"density = 1000",
+         "density = 1000\nmodel = \"snow\"\nstretch_limit = 0",
+         "22:17: ",
+         "greater than 0"},
+        {"density = 1000",
+         "density = 1000\nmodel = \"snow\"\ncompression_limit = 1",
+         "22:21: ",
+         "less than 1"},
+        {"density = 1000", "density = 1000\nhardening = 10", "21:1: ", "unknown word"},
+        {"dt     = \"1 ms\"", "transfer = \"pic\"", "9:12: ", "flip"},
+        {"dt     = \"1 ms\"", "pic_rate = -1", "9:12: ", "at least 0"},
+    })));
+    const std::string own = "domain_size = \"25 mm\"";
+    const auto with_method = [&](const std::string& words) {
+        return mistakes_of(with(with(sound_shot(), own, own + "\n" + words),
+                                "dt     = \"1 ms\"",
+                                "steps  = \"bdf2\""));
+    };
+    REQUIRE(with_method("method = \"mpm\"").size() == 1);
+    CHECK_THAT(with_method("method = \"mpm\"").front(),
+               StartsWith("14:10: ") && Contains("bdf2"));
+    CHECK(with_method("method = \"domains\"").empty());
+    const auto snow = mistakes_of(with(with(sound_shot(), own, own + "\nmethod = \"domains\""),
+                                       "density = 1000",
+                                       "density = 1000\nmodel = \"snow\""));
+    REQUIRE(snow.size() >= 1);
+    CHECK_THAT(snow.front(), StartsWith("14:10: ") && Contains("only points"));
 }
 
 TEST_CASE("static steps need the method fem") {

@@ -101,6 +101,49 @@ TEST_CASE("the alternatives of the vocabulary are read") {
     CHECK(shot.render.camera.lens == 35);
 }
 
+TEST_CASE("bodies have methods and kernels of their own") {
+    using sim::Kernel;
+    using sim::Method;
+    const auto solver_and_body = [](const std::string& of_solver,
+                                    const std::string& of_body,
+                                    const std::string& of_region) {
+        std::string text = with(sound_shot(), "method = \"enriched\"", of_solver);
+        text = with(text, "domain_size = \"25 mm\"", "domain_size = \"25 mm\"\n" + of_body);
+        text = with(text, "density = 1000", "density = 1000\n" + of_region);
+        const sim::Scene scene = load_text(text).scene;
+        return std::pair(method_of(scene.solver, scene.bodies[0]),
+                         kernel_of(scene.solver, scene.bodies[0]));
+    };
+    CHECK(solver_and_body("", "", "") == std::pair(Method::Enriched, Kernel::Linear));
+    CHECK(solver_and_body("method = \"mpm\"", "", "")
+          == std::pair(Method::Mpm, Kernel::Quadratic));
+    CHECK(solver_and_body("kernel = \"cubic\"", "", "")
+          == std::pair(Method::Enriched, Kernel::Cubic));
+    CHECK(solver_and_body("method = \"mpm\"", "method = \"domains\"", "")
+          == std::pair(Method::Domains, Kernel::Linear));
+    CHECK(solver_and_body("method = \"fem\"", "method = \"mpm\"\nkernel = \"linear\"", "")
+          == std::pair(Method::Mpm, Kernel::Linear));
+    CHECK(solver_and_body("", "", "model = \"snow\"")
+          == std::pair(Method::Mpm, Kernel::Quadratic));
+
+    const sim::Scene snow =
+        load_text(with(with(sound_shot(),
+                            "density = 1000",
+                            "density = 1000\nmodel = \"snow\"\nhardening = 15\n"
+                            "compression_limit = 0.02\nstretch_limit = \"0.5%\""),
+                       "dt     = \"1 ms\"",
+                       "transfer = \"apic\"\npic_rate = 2"))
+            .scene;
+    CHECK(snow.solver.transfer == sim::Transfer::Apic);
+    CHECK(snow.solver.pic_rate == 2);
+    for (const sim::Region& region : snow.bodies[0].regions) {  // later layers inherit
+        CHECK(region.model == sim::Model::Snow);
+        CHECK(region.snow.hardening == 15);
+        CHECK(region.snow.compression_limit == 0.02);
+        CHECK(region.snow.stretch_limit == 0.005);
+    }
+}
+
 TEST_CASE("the shots that ship are sound") {
     const std::string shots = SOURCE_ROOT "/shots/";
     CHECK(load_shot(shots + "bar.toml").warnings.empty());
