@@ -72,6 +72,14 @@ Vec3 moment_point(const Pin& pin, const AssembledPin& assembled, const Field& x)
 
 }  // namespace
 
+std::vector<float> stretches(const PointState& state) {
+    std::vector<float> result;
+    for (const Matrix3<double>& F : state.F)
+        result.push_back(static_cast<float>(
+            Eigen::JacobiSVD<Mat3>(Eigen::Map<const Mat3>(F.m)).singularValues()[0]));
+    return result;
+}
+
 std::vector<Vec3> corners_of(const AssembledBody& body, const Field& x) {
     std::vector<Vec3> corners(body.end - body.begin);
     for (std::size_t c = 0; c < corners.size(); ++c)

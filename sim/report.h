@@ -17,7 +17,10 @@ std::vector<PinRow> pins_of(const Scene& scene,
                             const Stepper& stepper,
                             const State& state);
 
-/// Corner positions of one body.   (#C of the body) [m]
+/// Largest principal stretch of each point, of snow its elastic part.   (#P)
+std::vector<float> stretches(const PointState& state);
+
+/// Positions of the corners, or points, of one body.   (#C of the body) [m]
 std::vector<Vec3> corners_of(const AssembledBody& body, const Field& x);
 
 }  // namespace sim

@@ -136,7 +136,16 @@ std::vector<assets::SurfaceFrame> Simulation::deformed_surfaces() const {
 }
 
 std::vector<PointCloud> Simulation::point_clouds() const {
-    return {};
+    std::vector<PointCloud> clouds;
+    for (std::size_t b = 0; b < impl_->assembly.bodies.size(); ++b)
+        if (const AssembledBody& body = impl_->assembly.bodies[b]; body.points)
+            clouds.push_back({static_cast<int>(b),
+                              impl_->scene.bodies[b].name,
+                              body.points->spacing,
+                              corners_of(body, impl_->state.x),
+                              body.points->region,
+                              stretches(impl_->state.points[b])});
+    return clouds;
 }
 
 std::vector<std::byte> Simulation::checkpoint() const {

@@ -71,7 +71,7 @@ class Simulation {
     std::vector<assets::CachedSurface> surfaces() const;
     std::vector<assets::SurfaceFrame> deformed_surfaces() const;
 
-    /// Bodies made of material points, in order, now.
+    /// The bodies made of points, in order, now. They have no skins among surfaces().
     std::vector<PointCloud> point_clouds() const;
 
     /// Everything that later frames depend on, in double; restore() continues bit-identically.
