@@ -42,12 +42,33 @@ TEST_CASE("a restored checkpoint goes on to the same bits") {
     }
 }
 
+TEST_CASE("a restored checkpoint of points goes on to the same bits") {
+    const sim::Steps steps =
+        GENERATE(sim::Steps::Implicit, sim::Steps::Explicit, sim::Steps::SemiImplicit);
+    const sim::Transfer transfer = GENERATE(sim::Transfer::Flip, sim::Transfer::Apic);
+    sim::Scene scene = bar(sim::Method::Mpm, steps);
+    scene.solver.transfer = transfer;
+    scene.bodies[0].regions[1].model = sim::Model::Snow;
+    sim::Simulation whole(scene, frame_time), first(scene, frame_time),
+        second(scene, frame_time);
+    whole.advance_to(0.03);
+    first.advance_to(0.03);
+    second.restore(first.checkpoint());
+    whole.advance_to(0.06);
+    second.advance_to(0.06);
+    const bool goes_on = whole.checkpoint() == second.checkpoint(),
+               moved = !(whole.checkpoint() == first.checkpoint());
+    CHECK(goes_on);
+    CHECK(moved);
+}
+
 TEST_CASE("one thread and two give the same bits") {
     tests::BarOptions options;
     options.n_domains = {60, 12, 12};  // several bricks, cells and chunks
     options.segment_ends = {20, 40};
     options.domain_size = 0.0125;
     options.solver.dt = 2e-3;
+    options.solver.method = GENERATE(sim::Method::Enriched, sim::Method::Mpm);
     std::vector<std::byte> states[2];
     for (const int n_threads : {1, 2}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
