@@ -22,7 +22,9 @@ struct Case {
 const Case cases[] = {{"fem explicit", sim::Method::Fem, sim::Steps::Explicit},
                       {"enriched explicit", sim::Method::Enriched, sim::Steps::Explicit},
                       {"fem implicit", sim::Method::Fem, sim::Steps::Implicit},
-                      {"enriched implicit", sim::Method::Enriched, sim::Steps::Implicit}};
+                      {"enriched implicit", sim::Method::Enriched, sim::Steps::Implicit},
+                      {"mpm explicit", sim::Method::Mpm, sim::Steps::Explicit},  // quadratic
+                      {"mpm implicit", sim::Method::Mpm, sim::Steps::Implicit}};
 
 double processor_seconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
