@@ -60,11 +60,12 @@ bool Stepper::try_explicit(State& state, double dt) {
 
     // Kick by half of the forces at the start, and drift.
     Field& buffer = scratch_.trial;
-    const Field& force = map_.applied_transposed(gradient_, start_gradient_);
+    start_gradient_.assign(n_dofs, Vec3p{});
     add_start_gradient(start_gradient_);
     for (int i = 0; i < n_dofs; ++i)
-        q_[i] += step.is_free[i]
-                 * (step.q_tilde[i] - (dt_hat_ * inverse_mass_[i] / damped) * force[i]);
+        q_[i] +=
+            step.is_free[i]
+            * (step.q_tilde[i] - (dt_hat_ * inverse_mass_[i] / damped) * start_gradient_[i]);
     q_moved_ = q_;
     moved_ = map_.applied(q_, moved_);
     exchange_contact(state, dt);

@@ -66,7 +66,7 @@ void Stepper::begin_step(const State& state, double dt, Scheme scheme) {
     prescribe(scene_, assembly_, state.time, state.time + dt, prescribed_);
     choose_free_corners(state.x);
     start_scheme(state, dt, scheme);
-    transfer(state);
+    transfer(state, scheme);
     prescribe_dofs(state, dt);
     for (std::size_t b = 0; b < points_.size(); ++b)
         if (points_[b])
@@ -120,7 +120,7 @@ Stepper::Motion Stepper::motion_before(const State& state, double dt, int c) con
     return {is_free * (dt * state.v[c] - dt / 2 * dv) + prescribed_dx, is_free * dv};
 }
 
-void Stepper::transfer(const State& state) {
+void Stepper::transfer(const State& state, Scheme scheme) {
     // Mass and momentum to the degrees of freedom: M = Tᵀ m, M q_n = Tᵀ (m v). Lumped means over the corners around a
     // node see a rotation too slow where corners lie on one side of it, so the body's rigid motion goes over by its
     // value at the node and only the rest by means: rigid motion is exact, and so is momentum, as Σ_i w_ic x_i = x_c.
@@ -137,13 +137,22 @@ void Stepper::transfer(const State& state) {
                                   : RigidMotion{});
         const RigidMotion apart = is_affine ? RigidMotion{} : rigid.back();
         for (int c = begin; c < end; ++c)
-            corner_[c] = assembly_.mass[c] * (v_hat_[c] - apart.at(state.x[c]));
+            corner_[c] =
+                assembly_.mass[c] * (v_hat_[c] - apart.at(state.x[c]))
+                + Vec3p{0, 0, 0, assembly_.mass[c][0]};  // mass goes along in the fourth
     }
-    dof_mass_ = map_.applied_transposed(assembly_.mass, dof_mass_);
     const Field& momentum = map_.applied_transposed(corner_, q_n_);
     if (is_affine && !map_.is_identity())
         add_affine_momentum(state);
-    const Field& force = map_.applied_transposed(assembly_.force, step.q_tilde);
+    // In explicit steps inner forces of corners act with those from outside.
+    if (scheme == Scheme::Verlet) {
+        acting_.resize(state.x.size());
+        for (std::size_t c = 0; c < state.x.size(); ++c)
+            acting_[c] = assembly_.force[c] - gradient_[c];
+    }
+    const Field& force = map_.applied_transposed(
+        scheme == Scheme::Verlet ? acting_ : assembly_.force, step.q_tilde);
+    dof_mass_.resize(n);
     q_n_.resize(n);
     step.q_tilde.resize(n);
     step.mass.resize(n);
@@ -155,10 +164,11 @@ void Stepper::transfer(const State& state) {
     step.is_free.assign(n, Vec3p{1, 1, 1, 0});
     inverse_mass_.resize(n);
     for (int i = 0; i < n; ++i) {
-        const double mass = dof_mass_[i][0];
+        const double mass = momentum[i][3];
+        dof_mass_[i] = Vec3p{mass, mass, mass, 0};
         const double inverse_mass = mass > 0 ? 1 / mass : 0;
         inverse_mass_[i] = inverse_mass;
-        q_n_[i] = inverse_mass * momentum[i];
+        q_n_[i] = inverse_mass * momentum[i] * Vec3p{1, 1, 1, 0};
         if (!is_affine || !(mass > 0))
             q_n_[i] += rigid[map_.dof_body()[i]].at(map_.dof_position()[i]);
         step.q_tilde[i] = (q_n_[i] + dt_hat_ * inverse_mass * force[i]) / damped;

@@ -82,7 +82,7 @@ class Stepper {
     };
 
     Motion motion_before(const State& state, double dt, int c) const;
-    void transfer(const State& state);
+    void transfer(const State& state, Scheme scheme);
     void prescribe_dofs(const State& state, double dt);
     void exchange_contact(const State& state, double dt);
     void move_through_grid(Field& wanted);
@@ -145,10 +145,11 @@ class Stepper {
     Field q_moved_;  // (#dofs) what moved_ comes from, but for a rigid shift [m/s]
     std::vector<PinnedNode> pinned_nodes_;
     std::vector<NodeReaction> node_reactions_;
-    Field start_gradient_, grid_gradient_;  // of explicit steps (#dofs) [N]
+    Field start_gradient_, grid_gradient_;  // of points in explicit steps (#dofs) [N]
     Field moved_;  // (#C) velocity that moves the corners in this step [m/s]
     Field corner_, reaction_;
     Field x_end_;                    // (#C) where they end [m]
+    Field acting_;                   // (#C) forces of the first kick of an explicit step [N]
     Field gradient_, end_gradient_;  // of explicit steps, at the start and the end (#C) [N]
 };
 

@@ -46,7 +46,9 @@ template <int n>
                                                    const Vec3p* d,
                                                    const Vec3p* v) {
     Gradient sum{};
+#pragma GCC unroll 4
     for (int c = 0; c < n; ++c)
+#pragma GCC unroll 4
         for (int b = 0; b < n; ++b, v += n) {
             const Vec3p row = row_sum<n>(w, v), slope = row_sum<n>(d, v);
             sum.column[0] += (w[b][1] * w[c][2]) * slope;
@@ -60,10 +62,12 @@ template <int n>
 template <int n>
 [[gnu::always_inline]] inline void add_to_plane(
     const Vec3p* w, const Vec3p* d, int c, const Gradient& A, Vec3p* sum) {
+#pragma GCC unroll 4
     for (int b = 0; b < n; ++b) {
         const Vec3p along = (w[b][1] * w[c][2]) * A.column[0];
         const Vec3p across =
             (d[b][1] * w[c][2]) * A.column[1] + (w[b][1] * d[c][2]) * A.column[2];
+#pragma GCC unroll 4
         for (int a = 0; a < n; ++a)
             sum[n * b + a] += d[a][0] * along + w[a][0] * across;
     }
@@ -88,7 +92,9 @@ void CornerMap::apply(const Field& q, Field& u) const {
                         for (int s = group.begin; s < group.end; ++s) {
                             Vec3p w[n], sum{};
                             S::weights(slave_local_[s], w);
+#pragma GCC unroll 4
                             for (int c = 0; c < n; ++c)
+#pragma GCC unroll 4
                                 for (int b = 0; b < n; ++b)
                                     sum += (w[b][1] * w[c][2])
                                            * row_sum<n>(w, v + n * (n * c + b));
