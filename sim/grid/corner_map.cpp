@@ -21,6 +21,13 @@ template <int n>
     return sum;
 }
 
+/// Σ_a w_a v_a over the eight nodes of a linear stencil.
+[[gnu::always_inline]] inline Vec3p trilinear_sum(const std::array<double, 8>& w,
+                                                  const Vec3p* v) {
+    return ((w[0] * v[0] + w[1] * v[1]) + (w[2] * v[2] + w[3] * v[3]))
+           + ((w[4] * v[4] + w[5] * v[5]) + (w[6] * v[6] + w[7] * v[7]));
+}
+
 /// The second factors of G in one axis after the other: see CornerMap::Factor.
 template <class S>
 [[gnu::always_inline]] inline void factors(
@@ -90,6 +97,11 @@ void CornerMap::apply(const Field& q, Field& u) const {
                         for (int a = 0; a < per_group; ++a)
                             v[a] = q[nodes[a]];
                         for (int s = group.begin; s < group.end; ++s) {
+                            if constexpr (n == 2) {
+                                u[slave_corner_[s]] = trilinear_sum(
+                                    trilinear_weights_[part.first_trilinear + s], v);
+                                continue;
+                            }
                             Vec3p w[n], sum{};
                             S::weights(slave_local_[s], w);
 #pragma GCC unroll 4
@@ -133,6 +145,14 @@ void CornerMap::gather(const Part& part, const Field& f, Field& q) const {
             for (int first = 0; first < n; first += planes) {
                 Vec3p sum[planes * n * n] = {};
                 for (int s = group.begin; s < group.end; ++s) {
+                    if constexpr (n == 2) {
+                        const auto& w8 = trilinear_weights_[part.first_trilinear + s];
+                        const Vec3p value = f[slave_corner_[s]];
+#pragma GCC unroll 8
+                        for (int a = 0; a < 8; ++a)
+                            sum[a] += (squared ? w8[a] * w8[a] : w8[a]) * value;
+                        continue;
+                    }
                     Vec3p w[n];
                     S::weights(slave_local_[s], w);
                     if (squared)

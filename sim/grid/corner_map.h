@@ -110,6 +110,7 @@ class CornerMap {
         double cell_size = 0;
         int first_group = 0, last_group = 0, first_node = 0, last_node = 0;
         std::size_t first_entry = 0, first_source = 0;
+        int first_trilinear = 0;  // added to a slave's number, of linear kernels
     };
 
     struct Box;  // of cells
@@ -119,6 +120,7 @@ class CornerMap {
     Box box_of_slaves(const Field& corners, const BodyRange& body, double shift);
     void sort_slaves(const Field& corners, const BodyRange& body, const Box& box, double shift);
     void number_nodes(const Box& box, int n, Part& part);
+    void keep_trilinear_weights(Part& part);
 
     // corner_map.cpp
     template <class S, bool squared>
@@ -139,9 +141,10 @@ class CornerMap {
     std::vector<int> group_nodes_;  // (#entries) degrees of freedom
     std::vector<int>
         node_sources_;  // entries that a node sums, -1 where none; (order + 1)³ a node
-    std::vector<int> slave_corner_;  // (#slaves) grouped
-    Field slave_local_;              // (#slaves) t of Spline
-    mutable Field group_sums_;       // (#entries) scratch of the gathers
+    std::vector<int> slave_corner_;                         // (#slaves) grouped
+    Field slave_local_;                                     // (#slaves) t of Spline
+    std::vector<std::array<double, 8>> trilinear_weights_;  // of slaves with linear kernels
+    mutable Field group_sums_;                              // (#entries) scratch of the gathers
 
     // Scratch of rebuild(), kept to avoid allocations in every step.
     std::vector<int> slave_order_, cell_of_slave_, cell_start_, node_of_, base_;
