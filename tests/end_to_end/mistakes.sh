@@ -29,7 +29,7 @@ mistake 20:17 "less than 0.5" 's/= 0.3$/= 0.5/'
 mistake 26:17 "soft" '26s/0\.1/7.1/; 26s/0\.2/7.2/'
 mistake 13:15 "no file 'no.obj'" '13s/.*/mesh        = "no.obj"/'
 mistake 13:15 "outside the world" '13s/0\.3/3e3/'
-mistake 9:10 "not available yet" '9s/enriched/mpm/'
+mistake 9:10 "not available yet" '9s/enriched/auto/'
 
 expect_exit 2 "$supple" sim "$tiny" --set solver.mehtod=fem
 grep -q "^--set solver.mehtod=fem: error: .*did you mean 'method'" err.txt || fail "$(cat err.txt)"
