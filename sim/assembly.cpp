@@ -189,15 +189,17 @@ std::vector<ContactCorner> Assembly::contact_corners() const {
                                   lattice.edge});
             continue;
         }
-        std::vector<int> n_domains(lattice.n_corners(), 0);
+        // Inside the body where domains are all around; a place may hold several in one direction.
+        std::vector<unsigned> directions(lattice.n_corners(), 0);
         std::vector<double> modulus(lattice.n_corners(), 0);
         for (int p = 0; p < lattice.n_domains(); ++p)
-            for (const int c : lattice.corners[p]) {
-                ++n_domains[c];
+            for (int a = 0; a < 8; ++a) {
+                const int c = lattice.corners[p][a];
+                directions[c] |= 1u << a;
                 modulus[c] = std::max(modulus[c], young_modulus(lattice, p));
             }
         for (int c = 0; c < lattice.n_corners(); ++c)
-            if (n_domains[c] < 8)
+            if (directions[c] != 0xff)
                 result.push_back({body.begin + c,
                                   index,
                                   lattice.corner_outside[c],

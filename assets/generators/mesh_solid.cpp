@@ -21,6 +21,11 @@ namespace {
 // twice in the mesh's volume, hence no narrower.
 constexpr double most_volume_ratio = 2;
 
+// A level set that misses the mesh's volume by more has lost thin parts; half its voxels may have them.
+constexpr double volume_tolerance = 0.005;
+constexpr int most_halvings = 2;
+constexpr double most_voxels = 1e8;  // some 400 MB
+
 /// Volume inside a level set whose values and voxels are in voxel units.   [voxels]
 double enclosed_volume(const openvdb::FloatGrid& grid) {
     double volume = 0;
@@ -85,6 +90,10 @@ class LevelSetSolid : public Solid {
 
     double volume() const { return enclosed_volume(*grid_) * voxel_ * voxel_ * voxel_; }
 
+    double voxel() const { return voxel_; }
+
+    double n_voxels() const { return static_cast<double>(grid_->activeVoxelCount()); }
+
   private:
     double voxel_;
     openvdb::FloatGrid::ConstPtr grid_;
@@ -94,6 +103,26 @@ class LevelSetSolid : public Solid {
     using Accessor = openvdb::FloatGrid::ConstUnsafeAccessor;
     mutable tbb::enumerable_thread_specific<Accessor> accessor_;
 };
+
+/// A level set with voxels halved where they are too coarse for thin parts. Where finer ones change nothing, the volumes
+/// differ since parts of the mesh overlap.
+std::unique_ptr<LevelSetSolid> fine_enough(const TriangleMesh& mesh,
+                                           double voxel,
+                                           double band) {
+    auto solid = std::make_unique<LevelSetSolid>(mesh, voxel, band);
+    const double of_mesh = signed_volume(mesh);
+    for (int halvings = 0; halvings < most_halvings; ++halvings) {
+        const double volume = solid->volume();
+        if (std::abs(volume - of_mesh) <= volume_tolerance * of_mesh
+            || 8 * solid->n_voxels() > most_voxels)
+            break;
+        auto finer = std::make_unique<LevelSetSolid>(mesh, solid->voxel() / 2, band);
+        if (std::abs(finer->volume() - volume) <= volume_tolerance * volume)
+            break;
+        solid = std::move(finer);
+    }
+    return solid;
+}
 
 }  // namespace
 
@@ -109,7 +138,7 @@ std::unique_ptr<Solid> make_mesh_solid(const TriangleMesh& mesh,
                                 "or use its parts as skins of a shape",
                                 name.string(),
                                 open));
-    auto solid = std::make_unique<LevelSetSolid>(mesh, voxel, band);
+    auto solid = fine_enough(mesh, voxel, band);
     const double of_mesh = signed_volume(mesh), of_solid = solid->volume();
     if (!(of_mesh > 0) || of_solid > most_volume_ratio * of_mesh
         || of_mesh > most_volume_ratio * of_solid)
@@ -122,7 +151,7 @@ std::unique_ptr<Solid> make_mesh_solid(const TriangleMesh& mesh,
                 "that, or some parts inside out?",
                 name.string(),
                 of_mesh,
-                voxel,
+                solid->voxel(),
                 of_solid));
     return solid;
 }

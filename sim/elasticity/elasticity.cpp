@@ -33,6 +33,44 @@ double hourglass_stiffness(const Lattice& lattice, int p) {
     return (1 + nu) / 2 * mu * lattice.domain_volume(p) / (12 * lattice.edge * lattice.edge);
 }
 
+/// Divides the domains of a box of cells so that in each layer a place has one corner at most: a brick has one place for
+/// it. One layer is enough where the body has no parts that only share cells.
+std::vector<std::vector<int>> layers_of(const Lattice& lattice,
+                                        const std::vector<int>& domains) {
+    struct Layer {
+        std::vector<int> domains;
+        std::map<std::array<int, 3>, int> separate;  // corner at a place that has several
+    };
+
+    std::vector<Layer> layers(1);
+    for (const int p : domains) {
+        if (lattice.part[p] < 0) {
+            layers[0].domains.push_back(p);
+            continue;
+        }
+        for (std::size_t k = 0;; ++k) {
+            if (k == layers.size())
+                layers.emplace_back();
+            Layer& layer = layers[k];
+            const auto fits = [&](int c) {
+                const auto at = layer.separate.find(lattice.corner_cell[c]);
+                return at == layer.separate.end() || at->second == c;
+            };
+            const auto& corners = lattice.corners[p];
+            if (!std::all_of(corners.begin(), corners.end(), fits))
+                continue;
+            for (const int c : corners)
+                layer.separate[lattice.corner_cell[c]] = c;
+            layer.domains.push_back(p);
+            break;
+        }
+    }
+    std::vector<std::vector<int>> result;
+    for (Layer& layer : layers)
+        result.push_back(std::move(layer.domains));
+    return result;
+}
+
 }  // namespace
 
 Elasticity::Elasticity(const Lattice& lattice, const Body& body) : edge_(lattice.edge) {
@@ -44,26 +82,37 @@ Elasticity::Elasticity(const Lattice& lattice, const Body& body) : edge_(lattice
         const int n_bricks = (n + largest_brick[k] - 1) / largest_brick[k];
         size[k] = (n + n_bricks - 1) / n_bricks;
     }
-    std::map<std::array<int, 3>, std::vector<int>>
-        domains_of_brick;  // keyed z, y, x: lattice order
-    for (int p = 0; p < lattice.n_domains(); ++p) {
-        std::array<int, 3> key;
-        for (int k = 0; k < 3; ++k)
-            key[2 - k] = (lattice.cell[p][k] - range.low[k]) / size[k];
-        domains_of_brick[key].push_back(p);
-    }
-    // Bricks of one colour share no corner: neighbours differ in the parity of one coordinate at least.
-    for (int color = 0; color < 8; ++color) {
-        color_start_.push_back(static_cast<int>(bricks_.size()));
-        for (const auto& [key, domains] : domains_of_brick) {
-            if ((key[0] & 1) + 2 * (key[1] & 1) + 4 * (key[2] & 1) != color)
-                continue;
-            std::array<int, 3> low;
+    std::map<std::array<int, 3>, std::vector<std::vector<int>>>
+        layers_of_brick;  // domains, keyed z, y, x: lattice order
+    std::size_t n_layers = 0;
+    {
+        std::map<std::array<int, 3>, std::vector<int>> domains_of_brick;
+        for (int p = 0; p < lattice.n_domains(); ++p) {
+            std::array<int, 3> key;
             for (int k = 0; k < 3; ++k)
-                low[k] = range.low[k] + key[2 - k] * size[k];
-            fill_brick(lattice, body, low, size, domains);
+                key[2 - k] = (lattice.cell[p][k] - range.low[k]) / size[k];
+            domains_of_brick[key].push_back(p);
+        }
+        for (const auto& [key, domains] : domains_of_brick) {
+            layers_of_brick[key] = layers_of(lattice, domains);
+            n_layers = std::max(n_layers, layers_of_brick[key].size());
         }
     }
+    // Bricks of one colour share no corner: neighbours differ in the parity of one coordinate at least, layers of one
+    // box of cells are of different colours.
+    for (std::size_t layer = 0; layer < n_layers; ++layer)
+        for (int color = 0; color < 8; ++color) {
+            color_start_.push_back(static_cast<int>(bricks_.size()));
+            for (const auto& [key, layers] : layers_of_brick) {
+                if (layer >= layers.size()
+                    || (key[0] & 1) + 2 * (key[1] & 1) + 4 * (key[2] & 1) != color)
+                    continue;
+                std::array<int, 3> low;
+                for (int k = 0; k < 3; ++k)
+                    low[k] = range.low[k] + key[2 - k] * size[k];
+                fill_brick(lattice, body, low, size, layers[layer]);
+            }
+        }
     color_start_.push_back(static_cast<int>(bricks_.size()));
 
     std::vector<char> met(lattice.n_corners(), 0);

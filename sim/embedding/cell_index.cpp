@@ -54,6 +54,39 @@ int CellIndex::nearest(const Vec3& point) const {
     return nearest.domain;
 }
 
+int CellIndex::nearest_part(const Vec3& point) const {
+    const int first = nearest(point);
+    if (lattice_.part[first] < 0)
+        return first;
+    // Parts of the cube itself mostly have it; else the material belongs to a part that only reaches a neighbour.
+    constexpr double block = 1.0 / PartBlocks::per_edge;
+    const std::array<int, 3> cell = lattice_.cell[first];
+    Nearest best = nearest_of_cell(cell, point);
+    if (best.squared <= block * block)
+        return best.domain;
+    for (int n = 0; n < 27; ++n) {
+        const std::array<int, 3> near = {
+            cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n / 9 - 1};
+        const Nearest other = nearest_of_cell(near, point);
+        if (other.domain >= 0 && other.squared < best.squared)
+            best = other;
+    }
+    return best.domain;
+}
+
+CellIndex::Nearest CellIndex::nearest_of_cell(const std::array<int, 3>& cell,
+                                              const Vec3& point) const {
+    Nearest best;
+    for (int p = find(cell); p >= 0 && p < lattice_.n_domains() && lattice_.cell[p] == cell
+                             && lattice_.part[p] >= 0;
+         ++p) {
+        const double squared = squared_distance(lattice_, p, point);
+        if (best.domain < 0 || squared < best.squared)
+            best = {p, squared};
+    }
+    return best;
+}
+
 void CellIndex::visit_ring(const std::array<int, 3>& center,
                            int ring,
                            const Vec3& point,

@@ -13,11 +13,15 @@ class CellIndex {
   public:
     explicit CellIndex(const Lattice& lattice);
 
-    /// The domain of a cell, or -1 where the body does not fill it.
+    /// The domain of a cell, the first of several, or -1 where the body does not fill it.
     int find(const std::array<int, 3>& cell) const;
 
     /// The domain nearest to a point in lattice units, (X - origin) / s; the lowest of several at the same distance.
     int nearest(const Vec3& point) const;
+
+    /// The same where the nearest domain has no neighbour that it is not connected to; else, of the domains around, the
+    /// one whose material is nearest.
+    int nearest_part(const Vec3& point) const;
 
   private:
     struct Nearest {
@@ -25,6 +29,7 @@ class CellIndex {
         double squared = 0;  // [domain edges²]
     };
 
+    Nearest nearest_of_cell(const std::array<int, 3>& cell, const Vec3& point) const;
     void visit_ring(const std::array<int, 3>& center,
                     int ring,
                     const Vec3& point,

@@ -19,7 +19,7 @@ std::vector<Binding> bind_points(const Lattice& lattice, const std::vector<Vec3>
     std::vector<Binding> bindings(points.size());
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         const Vec3 point = (points[i] - lattice.origin) / lattice.edge;
-        const int domain = index.nearest(point);
+        const int domain = index.nearest_part(point);
         const std::array<int, 3>& cell = lattice.cell[domain];
         const Vec3 xi = (point - Vec3(cell[0], cell[1], cell[2]))
                             .cwiseMax(-most_extrapolation)

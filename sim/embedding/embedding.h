@@ -18,7 +18,8 @@ struct Binding {
 };
 
 /// Binds points to the domain that holds them, else to the nearest domain, extrapolated by no more than half a
-/// domain (the point is first moved to that limit).   (n)
+/// domain (the point is first moved to that limit). Of domains that hold parts not connected to each other, the one
+/// whose material is nearest.   (n)
 std::vector<Binding> bind_points(const Lattice& lattice, const std::vector<Vec3>& points);
 
 /// x = Σ_a w_a x_a.   [m]

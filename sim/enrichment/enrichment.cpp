@@ -31,6 +31,15 @@ void meet(int& seen, int region) {
     seen = seen == none || seen == region ? region : several;
 }
 
+/// Whether domain n, beside p along an axis, has the four corners of the face between them in common with it.
+bool share_face(const Lattice& lattice, int p, int n, int axis, int side) {
+    for (int a = 0; a < 8; ++a)
+        if ((a >> axis & 1) == side
+            && lattice.corners[p][a] != lattice.corners[n][a ^ (1 << axis)])
+            return false;
+    return true;
+}
+
 /// Smallest and largest principal stretch of a domain's mean F.
 std::pair<double, double> principal_stretches(const Lattice& lattice,
                                               int p,
@@ -49,19 +58,25 @@ std::pair<double, double> principal_stretches(const Lattice& lattice,
 }  // namespace
 
 std::vector<int> boundary_domains(const Lattice& lattice) {
-    std::map<std::array<int, 3>, int> domain_at;
-    for (int p = 0; p < lattice.n_domains(); ++p)
-        domain_at[lattice.cell[p]] = p;
+    std::map<std::array<int, 3>, int>
+        first_at;  // of the domains of a cell, which follow each other
+    for (int p = lattice.n_domains() - 1; p >= 0; --p)
+        first_at[lattice.cell[p]] = p;
     std::vector<int> boundary;
     for (int p = 0; p < lattice.n_domains(); ++p) {
         bool differs = false;
         for (int axis = 0; axis < 3; ++axis)
-            for (const int side : {-1, 1}) {
+            for (const int side : {0, 1}) {
                 std::array<int, 3> neighbour = lattice.cell[p];
-                neighbour[axis] += side;
-                const auto found = domain_at.find(neighbour);
-                differs |= found != domain_at.end()
-                           && lattice.region[found->second] != lattice.region[p];
+                neighbour[axis] += 2 * side - 1;
+                const auto found = first_at.find(neighbour);
+                if (found == first_at.end())
+                    continue;
+                for (int n = found->second;
+                     n < lattice.n_domains() && lattice.cell[n] == neighbour;
+                     ++n)
+                    differs |= lattice.region[n] != lattice.region[p]
+                               && share_face(lattice, p, n, axis, side);
             }
         if (differs)
             boundary.push_back(p);

@@ -1,13 +1,17 @@
 #include "sim/lattice/lattice.h"
 
 #include "assets/base/error.h"
+#include "sim/lattice/links.h"
 #include "sim/lattice/region_report.h"
 #include "sim/lattice/voxels.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <limits>
+#include <map>
 
 namespace sim {
 
@@ -27,11 +31,11 @@ void set_domains(const std::vector<FilledCube>& cubes,
     for (std::size_t p = 0; p < n; ++p) {
         const FilledCube& cube = cubes[p];
         lattice.cell[p] = cube.cell;
-        lattice.fill[p] = static_cast<double>(cube.filled) / samples_per_cube;
-        int most = 0;
+        lattice.fill[p] = cube.filled / samples_per_cube;
+        double most = 0;
         for (const auto& [r, count] : cube.samples) {
             const Region& region = regions[r];
-            const double share = static_cast<double>(count) / cube.filled;
+            const double share = count / cube.filled;
             lattice.mu[p] += share * lame_mu(region.young_modulus, region.poisson_ratio);
             lattice.lambda[p] +=
                 share * lame_lambda(region.young_modulus, region.poisson_ratio);
@@ -80,6 +84,13 @@ void set_corners(const std::array<int, 3>& n, Lattice& lattice) {
     }
 }
 
+/// Whether several corners lie at the place of this one.
+bool lies_with_another(const Lattice& lattice, std::size_t c) {
+    const auto& cells = lattice.corner_cell;
+    return (c > 0 && cells[c - 1] == cells[c])
+           || (c + 1 < cells.size() && cells[c + 1] == cells[c]);
+}
+
 void set_corner_shares(const CubeGrid& grid, const assets::Solid& solid, Lattice& lattice) {
     const std::size_t n = lattice.corner_cell.size();
     lattice.corner_rest.resize(n);
@@ -92,6 +103,18 @@ void set_corner_shares(const CubeGrid& grid, const assets::Solid& solid, Lattice
         lattice.corner_outside[c] =
             std::max(0.0, solid.signed_distance(lattice.corner_rest[c]));
     });
+    // Of several corners at one place each is outside its own part.
+    std::vector<double> squared(n, std::numeric_limits<double>::infinity());
+    for (int p = 0; p < lattice.n_domains(); ++p)
+        if (lattice.part[p] >= 0)
+            for (const int c : lattice.corners[p]) {
+                const auto& [x, y, z] = lattice.corner_cell[c];
+                squared[c] = std::min(squared[c], squared_distance(lattice, p, Vec3(x, y, z)));
+            }
+    for (std::size_t c = 0; c < n; ++c)
+        if (lies_with_another(lattice, c))
+            lattice.corner_outside[c] =
+                std::max(lattice.corner_outside[c], lattice.edge * std::sqrt(squared[c]));
     for (int p = 0; p < lattice.n_domains(); ++p)
         for (const int c : lattice.corners[p]) {
             lattice.corner_volume[c] += lattice.domain_volume(p) / 8;
@@ -128,10 +151,12 @@ Lattice make_lattice(const Body& body, std::vector<std::string>* repairs) {
             cube.cell[0] + middle.x(), cube.cell[1] + middle.y(), cube.cell[2] + middle.z()));
     }
     set_corners(grid.n, lattice);
+    Links links(grid, solid, cubes);
+    separate_corners(links, grid, solid, cubes, lattice);
     set_corner_shares(grid, solid, lattice);
     const double sample_volume = grid.edge * grid.edge * grid.edge / samples_per_cube;
     for (std::size_t r = 0; r < body.regions.size(); ++r) {
-        lattice.region_volume.push_back(static_cast<double>(tally.samples[r]) * sample_volume);
+        lattice.region_volume.push_back(tally.samples[r] * sample_volume);
         lattice.region_mass.push_back(lattice.region_volume[r] * body.regions[r].density);
     }
     if (repairs) {
@@ -140,6 +165,54 @@ Lattice make_lattice(const Body& body, std::vector<std::string>* repairs) {
     }
     return lattice;
 }
+
+double squared_distance(const Lattice& lattice, int domain, const Vec3& point) {
+    const auto& cell = lattice.cell[domain];
+    const Vec3 xi = point - Vec3(cell[0], cell[1], cell[2]);
+    if (lattice.part[domain] >= 0)
+        return lattice.parts[lattice.part[domain]].squared_distance(xi);
+    return (-xi).cwiseMax(xi - Vec3::Ones()).cwiseMax(0.0).squaredNorm();
+}
+
+namespace {
+
+/// Takes out of the selected corners those that lie with others at one place and have no material in the selected part,
+/// while another of them has.
+void keep_own_parts(const Lattice& lattice, const Level& level, std::vector<int>& selected) {
+    std::map<int, bool> has_material;  // of selected corners that lie with others
+    for (const int c : selected)
+        if (lies_with_another(lattice, c))
+            has_material[c] = false;
+    if (has_material.empty())
+        return;
+    for (int p = 0; p < lattice.n_domains(); ++p) {
+        if (lattice.part[p] < 0)
+            continue;
+        bool has = false;
+        const auto& [x, y, z] = lattice.cell[p];
+        lattice.parts[lattice.part[p]].for_each([&](const Vec3& middle) {
+            has = has
+                  || level(lattice.origin + lattice.edge * (Vec3(x, y, z) + middle))
+                         <= selection_tolerance * lattice.edge;
+        });
+        for (const int c : lattice.corners[p])
+            if (const auto at = has_material.find(c); at != has_material.end())
+                at->second |= has;
+    }
+    std::map<std::array<int, 3>, bool> any_at;
+    for (const auto& [c, has] : has_material)
+        any_at[lattice.corner_cell[c]] |= has;
+    selected.erase(std::remove_if(selected.begin(),
+                                  selected.end(),
+                                  [&](int c) {
+                                      const auto at = has_material.find(c);
+                                      return at != has_material.end() && !at->second
+                                             && any_at[lattice.corner_cell[c]];
+                                  }),
+                   selected.end());
+}
+
+}  // namespace
 
 std::vector<int> select_corners(const Lattice& lattice,
                                 const Body& body,
@@ -150,6 +223,7 @@ std::vector<int> select_corners(const Lattice& lattice,
     for (int c = 0; c < lattice.n_corners(); ++c)
         if (level(lattice.corner_rest[c]) <= selection_tolerance * lattice.edge)
             selected.push_back(c);
+    keep_own_parts(lattice, level, selected);
     if (!selected.empty())
         return selected;
     Vec3 min = lattice.corner_rest.front(), max = min;

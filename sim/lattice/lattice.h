@@ -2,6 +2,7 @@
 #pragma once
 
 #include "assets/generators/solid.h"
+#include "sim/lattice/part_blocks.h"
 #include "sim/scene.h"
 
 #include <array>
@@ -12,12 +13,16 @@ namespace sim {
 
 /// Corner a of a domain lies at (a & 1, a >> 1 & 1, a >> 2 & 1) of its cube. Domains and corners are sorted by
 /// z, then y, then x of their integer coordinates.
+///
+/// A cube that holds several parts of the body that are not connected in it has a domain for each: they share the cell
+/// but no corner, unless their neighbours connect them there. So two domains of neighbouring cells share the corners of
+/// their common face only if material meets across it, and several corners may lie at one place.
 struct Lattice {
     double edge = 0;       // s [m]
     Vec3 origin{0, 0, 0};  // rest position of the corner with coordinates (0,0,0) [m]
 
     std::vector<std::array<int, 3>>
-        cell;  // (#D) integer coordinates of each domain's lowest corner
+        cell;  // (#D) integer coordinates of each domain's lowest corner; not always unique
     std::vector<std::array<int, 8>> corners;  // (#D) its corners
     std::vector<double> fill;                 // (#D) filled fraction of the cube, (0, 1]
     std::vector<Vec3> filled_centre;          // (#D) centroid of the filled part [m]
@@ -30,7 +35,10 @@ struct Lattice {
     std::vector<double> corner_mass;    // (#C) an eighth of each adjacent domain's mass [kg]
     std::vector<double> corner_volume;  // (#C) the same share of filled volume [m³]
     std::vector<double>
-        corner_outside;  // (#C) distance outside the body's surface at rest, >= 0 [m]
+        corner_outside;     // (#C) distance outside the body's surface at rest, >= 0 [m]
+    std::vector<int> part;  // (#D) index in parts; -1 where no other corner lies at
+                            // the place of one of the domain's
+    std::vector<PartBlocks> parts;  // where in its cube a domain's material lies
     std::vector<double> region_volume, region_mass;  // (#regions) [m³], [kg]
 
     int n_domains() const { return static_cast<int>(cell.size()); }
@@ -46,8 +54,12 @@ struct Lattice {
 /// or of a body that fills no domain.
 Lattice make_lattice(const Body& body, std::vector<std::string>* repairs = nullptr);
 
+/// Squared distance from a point to what a domain carries: the nearest block of its part, or its cube.   [domain edges²]
+/// `point` in lattice units, (X - origin) / s.
+double squared_distance(const Lattice& lattice, int domain, const Vec3& point);
+
 /// Corners of the part that `select` names: those whose rest position lies in it (within 1e-6 s, so that rounding
-/// does not decide). Throws Error(Input) with select.key where there are none.
+/// does not decide); of several corners at one place those with material in it, or all where none has. Throws Error(Input) with select.key where there are none.
 std::vector<int> select_corners(const Lattice& lattice,
                                 const Body& body,
                                 const Selector& select);

@@ -27,11 +27,11 @@ int hidden_by(int region,
 }  // namespace
 
 RegionTally tally_regions(const std::vector<FilledCube>& cubes, std::size_t n_regions) {
-    RegionTally tally{std::vector<std::int64_t>(n_regions, 0),
-                      std::vector<int>(n_regions, 0),
+    RegionTally tally{std::vector<double>(n_regions, 0),
+                      std::vector<double>(n_regions, 0),
                       std::vector<char>(n_regions, false)};
     for (const FilledCube& cube : cubes) {
-        std::pair<int, int> most{-1, 0};
+        std::pair<int, double> most{-1, 0};
         for (const auto& [region, count] : cube.samples) {
             tally.samples[region] += count;
             tally.largest[region] = std::max(tally.largest[region], count);
@@ -49,7 +49,7 @@ void require_each_region(const Body& body,
                          const CubeGrid& grid,
                          const assets::Solid& solid,
                          const RegionLayers& regions) {
-    const auto none = std::find(tally.samples.begin(), tally.samples.end(), 0);
+    const auto none = std::find(tally.samples.begin(), tally.samples.end(), 0.0);
     if (none == tally.samples.end())
         return;
     const int r = static_cast<int>(none - tally.samples.begin());
@@ -87,7 +87,7 @@ void note_thin_regions(const Body& body,
     for (std::size_t r = 0; r < body.regions.size(); ++r) {
         if (tally.dominates[r])
             continue;
-        const double share = static_cast<double>(tally.largest[r]) / samples_per_cube;
+        const double share = tally.largest[r] / samples_per_cube;
         notes.push_back(
             fmt::format("region \"{}\" of body \"{}\" is thinner than a domain: about {:.2g} "
                         "m, where domain_size is {:g} m; "

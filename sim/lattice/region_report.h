@@ -3,15 +3,14 @@
 
 #include "sim/lattice/voxels.h"
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace sim {
 
 struct RegionTally {
-    std::vector<std::int64_t> samples;  // (#regions) in all cubes
-    std::vector<int> largest;           // (#regions) most samples in one cube
+    std::vector<double> samples;  // (#regions) in all cubes
+    std::vector<double> largest;  // (#regions) most samples in one cube
     std::vector<char> dominates;  // (#regions) whether it has the largest share of any cube
 };
 

@@ -1,12 +1,17 @@
 #include "sim/lattice/voxels.h"
 
 #include "assets/base/error.h"
+#include "sim/lattice/block_walk.h"
+#include "sim/lattice/part_shape.h"
+#include "sim/lattice/thickness.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
+#include <tuple>
 #include <utility>
 
 namespace sim {
@@ -16,82 +21,160 @@ namespace {
 // Above this a run would neither fit in memory nor end: a slip of the unit in domain_size, most likely.
 constexpr double most_cubes = 3e8;
 
-/// Adds `count` samples of a region around `middle`, keeping regions ascending.
-void add_samples(FilledCube& cube, int region, int count, const Vec3& middle) {
-    auto at = std::lower_bound(cube.samples.begin(), cube.samples.end(), std::pair(region, 0));
-    if (at == cube.samples.end() || at->first != region)
-        at = cube.samples.insert(at, {region, 0});
-    at->second += count;
-    cube.filled += count;
-    cube.moment += count * middle;
+// A part of the body where no ball of this radius fits is thinner than a domain. Slightly less than half an edge, so that
+// bodies one domain thick are not.
+constexpr double thin_depth = 0.49;  // [domain edges]
+
+/// A cube's samples by planes across z: bit x + 8 y of plane z.
+using Planes = std::array<std::uint64_t, samples_per_edge>;
+
+/// Whether all samples are connected face to face: the lowest, grown through them, reaches all.
+bool is_one_piece(const Planes& planes) {
+    constexpr std::uint64_t lowest_x = 0x0101010101010101;
+    Planes grown{};
+    for (int z = 0; z < samples_per_edge; ++z)
+        if (planes[z] != 0) {
+            grown[z] = planes[z] & (~planes[z] + 1);
+            break;
+        }
+    for (bool grows = true; grows;) {
+        grows = false;
+        for (int z = 0; z < samples_per_edge; ++z) {
+            const std::uint64_t g = grown[z];
+            std::uint64_t more =
+                g | (g << 1 & ~lowest_x) | (g & ~lowest_x) >> 1 | g << 8 | g >> 8;
+            more |= (z > 0 ? grown[z - 1] : 0) | (z + 1 < samples_per_edge ? grown[z + 1] : 0);
+            more &= planes[z];
+            grows |= more != g;
+            grown[z] = more;
+        }
+    }
+    return grown == planes;
 }
 
-/// A cube of samples: all those of a domain, or an eighth, and so on down to one.
-struct Block {
-    std::array<int, 3> low{0, 0, 0};  // first sample
-    int size = samples_per_edge;
+std::array<std::uint64_t, 6> faces_of(const Planes& planes) {
+    constexpr int m = samples_per_edge;
+    std::array<std::uint64_t, 6> faces{};
+    faces[4] = planes[0];
+    faces[5] = planes[m - 1];
+    for (int z = 0; z < m; ++z)
+        for (int i = 0; i < m; ++i)
+            for (const int side : {0, 1}) {
+                const int end = side * (m - 1);
+                const std::uint64_t at_x = planes[z] >> (end + m * i) & 1,
+                                    at_y = planes[z] >> (i + m * end) & 1;
+                faces[side] |= at_x << (i + m * z);      // u, v = y, z
+                faces[2 + side] |= at_y << (z + m * i);  // u, v = z, x
+            }
+    return faces;
+}
+
+/// What the regular samples of a cube tell of it.
+struct SampledCube {
+    FilledCube cube;
+    bool is_thin = false, is_one_piece = true;
 };
 
-/// What is known of a block from a larger one: whether it is wholly inside the body, and its only region or -1.
-struct Known {
-    bool inside = false;
-    int region = -1;
-};
-
-class CubeFiller {
-  public:
-    CubeFiller(const CubeGrid& grid, const assets::Solid& solid, const RegionLayers& regions)
-        : grid_(grid), solid_(solid), regions_(regions) {}
-
-    FilledCube fill(const std::array<int, 3>& cell) const {
-        FilledCube cube{cell, 0, Vec3::Zero(), {}};
-        fill(Block{}, Known{}, cube);
-        return cube;
-    }
-
-  private:
-    /// Distances and levels at the middle of a block decide for all of it where they exceed its radius; else its eight
-    /// parts are asked. A block of one sample has radius 0 and is always decided.
-    void fill(const Block& block, Known known, FilledCube& cube) const {
-        constexpr double m = samples_per_edge;
-        const Vec3 middle =
-            Vec3(block.low[0], block.low[1], block.low[2]) + Vec3::Constant(block.size / 2.0);
-        const Vec3 X = grid_.point(cube.cell[0] + middle.x() / m,
-                                   cube.cell[1] + middle.y() / m,
-                                   cube.cell[2] + middle.z() / m);
-        const double radius =
-            std::sqrt(3.0) * (block.size - 1) / 2 * grid_.edge / m;  // to its outermost samples
-        if (!known.inside) {
-            const double distance = solid_.signed_distance(X);
-            if (distance > radius)
-                return;
-            known.inside = distance <= -radius;
+SampledCube sample_cube(const CubeGrid& grid,
+                        const assets::Solid& solid,
+                        const RegionLayers& regions,
+                        const std::array<int, 3>& cell) {
+    SampledCube sampled;
+    sampled.cube.cell = cell;
+    Planes planes{};
+    Thickness thickness(solid, thin_depth * grid.edge);
+    // The surface passes through a sample's cell only if its middle is half a diagonal away at most.
+    const double half_diagonal = std::sqrt(3.0) / 2 * grid.edge / samples_per_edge;
+    const auto take = [&](const Block& block, int region, double distance) {
+        if (region >= 0) {
+            const double count = block.size * block.size * block.size;
+            sampled.cube.add(region, count);
+            sampled.cube.moment +=
+                count
+                * (Vec3(block.low[0], block.low[1], block.low[2]) + Vec3::Constant(block.size / 2.0));
+            for_samples(block, [&](int x, int y, int z) {
+                planes[z] |= std::uint64_t{1} << (x + samples_per_edge * y);
+            });
         }
-        if (known.region < 0)
-            known.region = block.size == 1 ? regions_.at(X) : regions_.of_ball(X, radius);
-        if (known.inside && known.region >= 0)
-            add_samples(cube, known.region, block.size * block.size * block.size, middle);
-        else
-            fill_parts(block, known, cube);
-    }
+        if (block.size == 1 && !sampled.is_thin && std::abs(distance) <= half_diagonal) {
+            const auto& [x, y, z] = block.low;
+            const Vec3 X =
+                sample_point(grid, cell, x + samples_per_edge * (y + samples_per_edge * z));
+            sampled.is_thin = thickness.is_thin_at(X, distance);
+        }
+    };
+    BlockWalk(grid, solid, regions, {samples_per_edge, half_diagonal, 0, 0}, take).walk(cell);
+    sampled.cube.faces = faces_of(planes);
+    sampled.is_one_piece = is_one_piece(planes);
+    return sampled;
+}
 
-    void fill_parts(const Block& block, const Known& known, FilledCube& cube) const {
-        const int half = block.size / 2;
-        for (int part = 0; part < 8; ++part)
-            fill({{block.low[0] + (part & 1 ? half : 0),
-                   block.low[1] + (part & 2 ? half : 0),
-                   block.low[2] + (part & 4 ? half : 0)},
-                  half},
-                 known,
-                 cube);
-    }
+using Cell = std::array<int, 3>;
 
-    const CubeGrid& grid_;
-    const assets::Solid& solid_;
-    const RegionLayers& regions_;
-};
+/// Order of cubes: by z, then y, then x.
+bool comes_before(const Cell& a, const Cell& b) {
+    return std::tie(a[2], a[1], a[0]) < std::tie(b[2], b[1], b[0]);
+}
+
+/// The cells to sample finely: thin ones, and what of their neighbours' faces is not wholly inside, so that a thin part
+/// is seen on both sides of a face.
+std::vector<Cell> with_neighbours(const std::vector<Cell>& thin,
+                                  const std::vector<FilledCube>& cubes,
+                                  const CubeGrid& grid) {
+    std::vector<Cell> cells = thin;
+    for (const Cell& cell : thin)
+        for (int axis = 0; axis < 3; ++axis)
+            for (const int side : {-1, 1}) {
+                Cell neighbour = cell;
+                neighbour[axis] += side;
+                if (neighbour[axis] < 0 || neighbour[axis] >= grid.n[axis])
+                    continue;
+                const auto at =
+                    std::lower_bound(cubes.begin(),
+                                     cubes.end(),
+                                     neighbour,
+                                     [](const FilledCube& cube, const Cell& wanted) {
+                                         return comes_before(cube.cell, wanted);
+                                     });
+                if (at == cubes.end() || at->cell != neighbour || !at->is_whole())
+                    cells.push_back(neighbour);
+            }
+    std::sort(cells.begin(), cells.end(), comes_before);
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    return cells;
+}
+
+/// Puts finely sampled cubes in the place of others; both sorted.
+std::vector<FilledCube> replaced(std::vector<FilledCube> cubes,
+                                 const std::vector<Cell>& cells,
+                                 std::vector<std::vector<FilledCube>> parts) {
+    std::vector<FilledCube> result;
+    auto cube = cubes.begin();
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        for (; cube != cubes.end() && comes_before(cube->cell, cells[k]); ++cube)
+            result.push_back(std::move(*cube));
+        while (cube != cubes.end() && cube->cell == cells[k])
+            ++cube;
+        std::move(parts[k].begin(), parts[k].end(), std::back_inserter(result));
+    }
+    std::move(cube, cubes.end(), std::back_inserter(result));
+    return result;
+}
 
 }  // namespace
+
+FilledCube::FilledCube() = default;
+FilledCube::FilledCube(FilledCube&&) noexcept = default;
+FilledCube& FilledCube::operator=(FilledCube&&) noexcept = default;
+FilledCube::~FilledCube() = default;
+
+void FilledCube::add(int region, double count) {
+    auto at = std::lower_bound(samples.begin(), samples.end(), std::pair(region, 0.0));
+    if (at == samples.end() || at->first != region)
+        at = samples.insert(at, {region, 0});
+    at->second += count;
+    filled += count;
+}
 
 CubeGrid place_grid(const assets::Solid& solid, const Body& body) {
     const double s = body.domain_size;
@@ -132,21 +215,43 @@ Vec3 sample_point(const CubeGrid& grid, const std::array<int, 3>& cell, int q) {
 std::vector<FilledCube> fill_cubes(const CubeGrid& grid,
                                    const assets::Solid& solid,
                                    const RegionLayers& regions) {
-    const CubeFiller filler(grid, solid, regions);
-    const int n_rows = grid.n[1] * grid.n[2];
-    std::vector<std::vector<FilledCube>> rows(
-        n_rows);  // each along x, so their order is that of the result
-    tbb::parallel_for(0, n_rows, [&](int row) {
+    struct Row {  // along x, so their order is that of the result
+        std::vector<FilledCube> cubes;
+        std::vector<Cell> thin;
+    };
+
+    std::vector<Row> rows(static_cast<std::size_t>(grid.n[1]) * grid.n[2]);
+    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t row) {
+        const int y = static_cast<int>(row % grid.n[1]), z = static_cast<int>(row / grid.n[1]);
         for (int x = 0; x < grid.n[0]; ++x) {
-            FilledCube cube = filler.fill({x, row % grid.n[1], row / grid.n[1]});
-            if (cube.filled > 0)
-                rows[row].push_back(std::move(cube));
+            SampledCube sampled = sample_cube(grid, solid, regions, {x, y, z});
+            if (sampled.is_thin)
+                rows[row].thin.push_back({x, y, z});
+            if (!sampled.is_one_piece) {
+                std::vector<FilledCube> parts = fill_finely(grid, solid, regions, {x, y, z});
+                if (parts.size() > 1) {
+                    std::move(parts.begin(), parts.end(), std::back_inserter(rows[row].cubes));
+                    continue;
+                }
+            }
+            if (sampled.cube.filled > 0)
+                rows[row].cubes.push_back(std::move(sampled.cube));
         }
     });
     std::vector<FilledCube> cubes;
-    for (std::vector<FilledCube>& row : rows)
-        std::move(row.begin(), row.end(), std::back_inserter(cubes));
-    return cubes;
+    std::vector<Cell> thin;
+    for (Row& row : rows) {
+        std::move(row.cubes.begin(), row.cubes.end(), std::back_inserter(cubes));
+        thin.insert(thin.end(), row.thin.begin(), row.thin.end());
+    }
+    if (thin.empty())
+        return cubes;
+    const std::vector<Cell> cells = with_neighbours(thin, cubes, grid);
+    std::vector<std::vector<FilledCube>> parts(cells.size());
+    tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t k) {
+        parts[k] = fill_finely(grid, solid, regions, cells[k]);
+    });
+    return replaced(std::move(cubes), cells, std::move(parts));
 }
 
 }  // namespace sim
