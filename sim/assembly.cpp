@@ -21,7 +21,7 @@ double young_modulus(const Lattice& lattice, int p) {
 }
 
 /// A domain's stiffness on its corners is V Bᵀ C B with B Bᵀ = 1/(2s²), C at most 3λ+2μ, over an eighth of its mass for
-/// each corner: w² <= 4 (3λ+2μ)/(rho s²), and no assembly of domains swings faster than its fastest one (Irons).
+/// each corner, hourglass modes and eight points being softer: w² <= 4 (3λ+2μ)/(rho s²), and no assembly of domains swings faster than its fastest one (Irons).
 double highest_frequency(const Lattice& lattice) {
     double most = 0;
     for (int p = 0; p < lattice.n_domains(); ++p)
@@ -57,7 +57,7 @@ AssembledBody::AssembledBody(const Body& body,
         end = begin + points->size();
         return;
     }
-    elasticity.emplace(lattice, body);
+    elasticity = make_elastic_energy(lattice, body, solver.quadrature);
     enrichment.emplace(lattice, solver.enrich, cell_size);
     for (const Skin& skin : body.skins)
         surfaces.emplace_back(lattice, body, skin);

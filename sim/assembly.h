@@ -4,7 +4,7 @@
 #include "assets/base/error.h"
 #include "sim/base/field.h"
 #include "sim/contact/collider_contact.h"
-#include "sim/elasticity/elasticity.h"
+#include "sim/elasticity/elastic_energy.h"
 #include "sim/embedding/embedding.h"
 #include "sim/enrichment/enrichment.h"
 #include "sim/lattice/lattice.h"
@@ -12,6 +12,7 @@
 #include "sim/points/material_points.h"
 #include "sim/scene.h"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,10 +27,10 @@ struct AssembledBody {
     Kernel kernel;
     double cell_size = 0;          // of its background grid [m]
     double highest_frequency = 0;  // bound of what its corners swing with at rest [rad/s]
-    std::optional<Elasticity> elasticity;   // of domains
-    std::optional<Enrichment> enrichment;   // of domains
-    std::optional<MaterialPoints> points;   // in place of both
-    std::vector<EmbeddedSurface> surfaces;  // none of points
+    std::unique_ptr<ElasticEnergy> elasticity;  // of domains
+    std::optional<Enrichment> enrichment;       // of domains
+    std::optional<MaterialPoints> points;       // in place of both
+    std::vector<EmbeddedSurface> surfaces;      // none of points
 
     AssembledBody(const Body& body,
                   Lattice made,

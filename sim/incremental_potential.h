@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/contact/contact_energy.h"
-#include "sim/elasticity/elasticity.h"
+#include "sim/elasticity/elastic_energy.h"
 #include "sim/grid/corner_map.h"
 #include "sim/grid/grid_energy.h"
 #include "sim/solver/potential.h"
@@ -22,7 +22,7 @@ class IncrementalPotential : public Potential {
   public:
     /// The bodies' energies of corners, null for bodies of points, and their ranges in the field of all corners.
     struct ElasticBody {
-        Elasticity* elasticity = nullptr;
+        ElasticEnergy* elasticity = nullptr;
         int begin = 0, end = 0;
         double energy_scale =
             0;  // Σ V (lambda + 2 mu): its energy at rest is the difference of terms as large [J]

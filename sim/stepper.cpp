@@ -25,7 +25,7 @@ std::vector<IncrementalPotential::ElasticBody> elastic_bodies(Assembly& assembly
             result.push_back({nullptr, body.begin, body.end, 0});
         else
             result.push_back(
-                {&*body.elasticity, body.begin, body.end, energy_scale(body.lattice)});
+                {body.elasticity.get(), body.begin, body.end, energy_scale(body.lattice)});
     return result;
 }
 

@@ -8,7 +8,6 @@ namespace {
 /// Words that have one meaning so far: they are checked, and their other values are told to be missing.
 void read_numerics(TableReader& table) {
     enum class Only { One };
-    table.choice<Only>("quadrature", {{"one_point", Only::One}}, {"eight_point"}, "one_point");
     table.choice<Only>("elements", {{"hex", Only::One}}, {"tet"}, "hex");
     if (table.has("tolerance")) {
         table.number("tolerance", Dimension::Number, {.most = 1, .above = 0});
@@ -53,6 +52,7 @@ std::optional<sim::Kernel> read_kernel(TableReader& table) {
 }
 
 sim::SolverOptions read_solver(TableReader table) {
+    using sim::Quadrature;
     using sim::Steps;
     using sim::Transfer;
     sim::SolverOptions solver;
@@ -88,6 +88,11 @@ sim::SolverOptions read_solver(TableReader table) {
         "grid_ratio", Dimension::Number, {.least = 1, .most = 100}, solver.grid_ratio);
     solver.damping = table.number("damping", Dimension::Rate, not_negative, solver.damping);
     solver.enrich = read_criteria(table);
+    solver.quadrature = table.choice<Quadrature>(
+        "quadrature",
+        {{"one_point", Quadrature::OnePoint}, {"eight_point", Quadrature::EightPoint}},
+        {},
+        "one_point");
     read_numerics(table);
     table.finish();
     return solver;

@@ -1,9 +1,8 @@
 // The elastic energy of one body on its lattice: one point per domain, and a rotation-invariant hourglass energy.
 #pragma once
 
-#include "sim/base/field.h"
 #include "sim/elasticity/brick.h"
-#include "sim/lattice/lattice.h"
+#include "sim/elasticity/elastic_energy.h"
 
 #include <array>
 #include <vector>
@@ -19,30 +18,16 @@ namespace sim {
 /// eps = (1+nu)/2 gives a domain bent along a lattice axis its exact stiffness E I, as incompatible modes would: the
 /// mode u_x = ξζ stores eps mu 2/3, the beam E/6.
 ///
-/// All fields are indexed by the body's corners. It runs in parallel itself, with the same result for any number of
-/// threads: bricks that share corners add to them one colour after the other.
-class Elasticity {
+/// It runs in parallel itself, with the same result for any number of threads: bricks that share corners add to them one colour after the other.
+class Elasticity : public ElasticEnergy {
   public:
     Elasticity(const Lattice& lattice, const Body& body);
 
-    /// Sets `gradient` (#C) to ∂E/∂x [N] and returns E [J]; +infinity where a law forbids the state (J <= 0).
-    double energy_and_gradient(const Vec3p* x, Vec3p* gradient);
-
-    /// Keeps K = ∂²E/∂x² at x for product() and diagonal(); `project`: made positive semi-definite.
-    void linearize(const Vec3p* x, bool project);
-
-    /// product = K u.   [N]
-    void product(const Vec3p* u, Vec3p* product);
-
-    /// A positive estimate of K's diagonal.   [N/m]
-    void diagonal(Vec3p* diagonal);
-
-    struct SmallestJ {
-        double J = 0;
-        int domain = -1;
-    };
-
-    SmallestJ smallest_J(const Vec3p* x) const;
+    double energy_and_gradient(const Vec3p* x, Vec3p* gradient) override;
+    void linearize(const Vec3p* x, bool project) override;
+    void product(const Vec3p* u, Vec3p* product) override;
+    void diagonal(Vec3p* diagonal) override;
+    SmallestJ smallest_J(const Vec3p* x) const override;
 
   private:
     /// A brick's corners and sums as its kernels want them, small enough for the second-level cache.

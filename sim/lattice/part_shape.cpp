@@ -118,7 +118,8 @@ std::vector<FilledCube> fill_finely(const CubeGrid& grid,
             const auto r = static_cast<std::size_t>(cells.region(c));
             cells_of_region.resize(std::max(cells_of_region.size(), r + 1), 0);
             cells_of_region[r] += cells.amount(c);
-            moment += cells.amount(c) * (Vec3(c % m, c / m % m, c / (m * m)) + Vec3::Constant(0.5));
+            moment +=
+                cells.amount(c) * (Vec3(c % m, c / m % m, c / (m * m)) + Vec3::Constant(0.5));
         }
         FilledCube part;
         part.cell = cell;

@@ -89,9 +89,9 @@ SampledCube sample_cube(const CubeGrid& grid,
         if (region >= 0) {
             const double count = block.size * block.size * block.size;
             sampled.cube.add(region, count);
-            sampled.cube.moment +=
-                count
-                * (Vec3(block.low[0], block.low[1], block.low[2]) + Vec3::Constant(block.size / 2.0));
+            sampled.cube.moment += count
+                                   * (Vec3(block.low[0], block.low[1], block.low[2])
+                                      + Vec3::Constant(block.size / 2.0));
             for_samples(block, [&](int x, int y, int z) {
                 planes[z] |= std::uint64_t{1} << (x + samples_per_edge * y);
             });

@@ -79,7 +79,9 @@ TEST_CASE("the alternatives of the vocabulary are read") {
         "= 1 } }\n"
         "look = { color_by = \"stretch\", opacity = 0.5, coated = false }\n"
         "[camera]\nposition = [1, 2, 3]\nlook_at = [0, 0, 0]\nlens = \"3.5 cm\"\n[output]");
+    text = with(text, "dt     = \"1 ms\"", "quadrature = \"eight_point\"");
     const Shot shot = load_text(text);
+    CHECK(shot.scene.solver.quadrature == sim::Quadrature::EightPoint);
     const sim::Body& body = shot.scene.bodies.front();
     CHECK(std::get<assets::Torus>(std::get<assets::Shape>(body.source.geometry)).minor == 0.1);
     CHECK(body.source.transform.rotate.z() == Approx(pi / 6));
