@@ -24,6 +24,9 @@ constexpr double most_volume_ratio = 2;
 // A level set that misses the mesh's volume by more has lost thin parts; half its voxels may have them.
 constexpr double volume_tolerance = 0.005;
 constexpr int most_halvings = 2;
+
+// A volume that the last halving has changed by more, and that is as far from the mesh's, is not to be trusted.
+constexpr double largest_change = 0.1;
 constexpr double most_voxels = 1e8;  // some 400 MB
 
 /// Volume inside a level set whose values and voxels are in voxel units.   [voxels]
@@ -104,24 +107,29 @@ class LevelSetSolid : public Solid {
     mutable tbb::enumerable_thread_specific<Accessor> accessor_;
 };
 
-/// A level set with voxels halved where they are too coarse for thin parts. Where finer ones change nothing, the volumes
-/// differ since parts of the mesh overlap.
-std::unique_ptr<LevelSetSolid> fine_enough(const TriangleMesh& mesh,
-                                           double voxel,
-                                           double band) {
-    auto solid = std::make_unique<LevelSetSolid>(mesh, voxel, band);
+/// A level set fine enough for the thin parts of a mesh, or not: then finer voxels would still change its volume.
+struct ResolvedSolid {
+    std::unique_ptr<LevelSetSolid> solid;
+    bool is_resolved = true;
+};
+
+/// Halves voxels where they are too coarse for thin parts. Where finer ones change nothing, the volumes differ since
+/// parts of the mesh overlap.
+ResolvedSolid resolved(const TriangleMesh& mesh, double voxel, double band) {
+    ResolvedSolid result{std::make_unique<LevelSetSolid>(mesh, voxel, band)};
     const double of_mesh = signed_volume(mesh);
     for (int halvings = 0; halvings < most_halvings; ++halvings) {
-        const double volume = solid->volume();
+        const double volume = result.solid->volume();
         if (std::abs(volume - of_mesh) <= volume_tolerance * of_mesh
-            || 8 * solid->n_voxels() > most_voxels)
+            || 8 * result.solid->n_voxels() > most_voxels)
             break;
-        auto finer = std::make_unique<LevelSetSolid>(mesh, solid->voxel() / 2, band);
-        if (std::abs(finer->volume() - volume) <= volume_tolerance * volume)
+        auto finer = std::make_unique<LevelSetSolid>(mesh, result.solid->voxel() / 2, band);
+        const double change = std::abs(finer->volume() - volume);
+        if (change <= volume_tolerance * volume)
             break;
-        solid = std::move(finer);
+        result = {std::move(finer), change <= largest_change * volume};
     }
-    return solid;
+    return result;
 }
 
 }  // namespace
@@ -138,10 +146,11 @@ std::unique_ptr<Solid> make_mesh_solid(const TriangleMesh& mesh,
                                 "or use its parts as skins of a shape",
                                 name.string(),
                                 open));
-    auto solid = fine_enough(mesh, voxel, band);
+    auto [solid, is_resolved] = resolved(mesh, voxel, band);
     const double of_mesh = signed_volume(mesh), of_solid = solid->volume();
     if (!(of_mesh > 0) || of_solid > most_volume_ratio * of_mesh
-        || of_mesh > most_volume_ratio * of_solid)
+        || of_mesh > most_volume_ratio * of_solid
+        || (!is_resolved && std::abs(of_solid - of_mesh) > largest_change * of_mesh))
         throw Error(
             ErrorKind::Input,
             fmt::format(
@@ -153,7 +162,7 @@ std::unique_ptr<Solid> make_mesh_solid(const TriangleMesh& mesh,
                 of_mesh,
                 solid->voxel(),
                 of_solid));
-    return solid;
+    return std::move(solid);  // a structured binding is not moved by itself
 }
 
 }  // namespace assets
