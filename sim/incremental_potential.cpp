@@ -38,7 +38,7 @@ void IncrementalPotential::for_elastic(Field& sums, const Act& act) {
 double IncrementalPotential::elastic_gradient(const Field& x, Field& gradient) {
     gradient.resize(x.size());
     double energy = 0;
-    for_elastic(gradient, [&](Elasticity& elasticity, int begin) {
+    for_elastic(gradient, [&](ElasticEnergy& elasticity, int begin) {
         energy += elasticity.energy_and_gradient(&x[begin], &gradient[begin]);
     });
     return energy;
@@ -88,7 +88,7 @@ void IncrementalPotential::linearize(const Field& q, bool project) {
     corner_diagonal_.resize(x_.size());
     corner_product_.resize(x_.size());
     double largest_coordinate = 0;
-    for_elastic(corner_diagonal_, [&](Elasticity& elasticity, int begin) {
+    for_elastic(corner_diagonal_, [&](ElasticEnergy& elasticity, int begin) {
         elasticity.linearize(&x_[begin], project);
         elasticity.diagonal(&corner_diagonal_[begin]);
     });
@@ -135,7 +135,7 @@ void IncrementalPotential::linearize(const Field& q, bool project) {
 
 double IncrementalPotential::hessian_product(const Field& p, Field& product) {
     const Field& u = map_.applied(p, corner_diagonal_);
-    for_elastic(corner_product_, [&](Elasticity& elasticity, int begin) {
+    for_elastic(corner_product_, [&](ElasticEnergy& elasticity, int begin) {
         elasticity.product(&u[begin], &corner_product_[begin]);
     });
     for (const ContactEnergy* contact : contacts_)

@@ -20,6 +20,7 @@ double energy_of_stretches(Model model, const Vec3& l) {
             return mu / 2 * (l.squaredNorm() - 3) + (lambda + mu) / 2 * std::pow(J - 1 - a, 2)
                    - mu * mu / (2 * (lambda + mu));
         case Model::FixedCorotated:
+        case Model::Snow:  // between two yields
             return mu * (l - Vec3::Ones()).squaredNorm() + lambda / 2 * std::pow(J - 1, 2);
     }
     return 0;
