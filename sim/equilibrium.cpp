@@ -63,7 +63,7 @@ bool Stepper::try_equilibrium(State& state,
     options.first_forcing = 0.1;
     options.max_iterations = 200;
     if (!surfaces_.empty())
-        surfaces_.begin_step(state.x, state.x, surface_speeds(state), 0);
+        surfaces_.begin_step({state.x, state.v, state.top_speed, state.contacts}, state.x, 0);
     const bool solved = minimize_with_contact(options, contact_passes);
     summary = summary_;
     if (!solved)

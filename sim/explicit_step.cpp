@@ -14,6 +14,7 @@ constexpr double safety = 0.8;  // of the stable step of the bodies at rest: str
 constexpr double most_excited =
     1.9;                            // w dt of the motion seen; beyond 2 it grows without bound
 constexpr double most_cells = 0.3;  // that a corner may pass in a step
+constexpr int contact_passes = 2;
 constexpr double noise =
     1e-8;  // of the kinetic energy: strain energy too small to tell a frequency
 
@@ -116,10 +117,15 @@ void Stepper::restrain_by_contact(const State& state, double dt) {
     if (colliders_.empty() && surfaces_.empty())
         return;
     Field change = moved_;
-    if (!surfaces_.empty()) {
+    for (int pass = 0; pass < contact_passes && !surfaces_.empty(); ++pass) {
+        // Found where the corners would end: again, as they end elsewhere once they are restrained.
         for (std::size_t c = 0; c < moved_.size(); ++c)
-            corner_[c] = state.x[c] + dt * moved_[c];
-        surfaces_.begin_step(state.x, corner_, surface_speeds(state), dt);
+            corner_[c] = state.x[c] + dt * change[c];
+        if (pass == 0)
+            surfaces_.begin_step(
+                {state.x, state.v, state.top_speed, state.contacts}, corner_, dt);
+        else
+            surfaces_.relinearize(corner_);
         surfaces_.restrain(state.x, assembly_.mass, dt, change);
     }
     colliders_.restrain(state.x, dt, change);

@@ -22,14 +22,13 @@ bool Stepper::try_implicit(State& state, double dt) {
 }
 
 bool Stepper::try_bdf2(State& state, double dt) {
-    // BDF2 takes the motion before as smooth. Where a corner begins or ceases to touch a collider it is not: the velocity
-    // jumps, and to continue the jump would create energy. Nor is it smooth while surfaces touch, whose energy is linearised anew in
-    // every step. Such a step is one of backward Euler, as is the one after it.
+    // BDF2 takes the motion before as smooth. Where something begins or ceases to touch it is not: the velocity jumps, and
+    // to continue the jump would create energy. Such a step is one of backward Euler, as is the one after it.
     const bool is_smooth = state.last_dt == 0 || !state.x_before.empty();
     bool solved = solve_step(state, dt, is_smooth ? Scheme::Bdf2 : Scheme::BackwardEuler);
     const bool has_event = solved
                            && (colliders_.has_changed_touch(potential_.positions())
-                               || surfaces_.has_touch(potential_.positions()));
+                               || surfaces_.has_changed_touch(potential_.positions()));
     if (has_event && is_smooth)
         solved = solve_step(state, dt, Scheme::BackwardEuler);
     if (!solved)
@@ -64,7 +63,7 @@ bool Stepper::solve_step(const State& state, double dt, Scheme scheme) {
     for (std::size_t c = 0; c < state.x.size(); ++c)
         x_end_[c] = potential_.step().x_n[c] + dt_hat_ * u[c];
     if (!surfaces_.empty())
-        surfaces_.begin_step(state.x, x_end_, surface_speeds(state), dt);
+        surfaces_.begin_step({state.x, state.v, state.top_speed, state.contacts}, x_end_, dt);
     if (!minimize_with_contact(options,
                                scene_.solver.steps == Steps::SemiImplicit ? 1 : contact_passes))
         return false;
@@ -106,6 +105,8 @@ bool Stepper::start_from_rest() {
 
 void Stepper::end_implicit(State& state, double dt) {
     set_reactions();
+    state.contacts = surfaces_.held(potential_.positions());
+    // What inner forces gave, before contact on the grid changes what moves the corners.
     const auto& step = potential_.step();
     set_node_reactions([&](int i) {
         return (step.mass[i] * (q_[i] - step.q_tilde[i]) + potential_.inner_part()[i])

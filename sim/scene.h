@@ -166,10 +166,16 @@ struct Collider {
     }
 };
 
-/// Between bodies: on the background grid after the solve, or by their surfaces inside it, with themselves too.
-struct Contact {
-    enum class Mode { Grid, Surface } mode = Mode::Grid;
+struct ContactPair {
+    std::array<std::string, 2> bodies;  // the same twice: a body with itself
     Friction friction;
+};
+
+/// Between bodies: by their surfaces inside the solve, with themselves too, or on the background grid after it.
+struct Contact {
+    enum class Mode { Surface, Grid } mode = Mode::Surface;
+    Friction friction;
+    std::vector<ContactPair> pairs = {};  // with a friction of their own; later wins
 };
 
 struct Probe {

@@ -152,8 +152,11 @@ std::vector<std::byte> Simulation::checkpoint() const {
     std::vector<std::byte> bytes;
     const State& state = impl_->state;
     const double has_history = state.x_before.empty() ? 0 : 1;
-    for (const double number : {state.time, state.last_dt, state.dt_limit, has_history})
+    const double n_contacts = static_cast<double>(state.contacts.size());
+    for (const double number :
+         {state.time, state.last_dt, state.dt_limit, has_history, n_contacts})
         append(bytes, &number, sizeof(double));
+    append(bytes, state.contacts.data(), state.contacts.size() * sizeof(HeldContact));
     append(bytes, state.top_speed.data(), state.top_speed.size() * sizeof(double));
     for (const Field* field : impl_->fields())
         append(bytes, field->data(), field->size() * sizeof(Vec3p));
@@ -177,9 +180,14 @@ void Simulation::restore(const std::vector<std::byte>& bytes) {
         std::memcpy(to, bytes.data() + next, size);
         next += size;
     };
-    double has_history = 0;
-    for (double* number : {&state.time, &state.last_dt, &state.dt_limit, &has_history})
+    double has_history = 0, n_contacts = 0;
+    for (double* number :
+         {&state.time, &state.last_dt, &state.dt_limit, &has_history, &n_contacts})
         take(number, sizeof(double));
+    assets::check(n_contacts * sizeof(HeldContact) <= bytes.size(),
+                  "checkpoint of another scene");
+    state.contacts.resize(static_cast<std::size_t>(n_contacts));
+    take(state.contacts.data(), state.contacts.size() * sizeof(HeldContact));
     state.x_before.resize(has_history > 0 ? state.x.size() : 0);
     take(state.top_speed.data(), state.top_speed.size() * sizeof(double));
     for (Field* field : impl_->fields()) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/base/field.h"
+#include "sim/contact/surface_contact.h"
 #include "sim/grid/corner_map.h"
 #include "sim/points/material_points.h"
 
@@ -19,9 +20,10 @@ struct State {
     Field x_before,
         v_before;  // where the last step began; kept by BDF2 alone, empty before its first step
     std::vector<Gradient> affine;  // B of [JSS15]: Σ_i w_i v_i (x_i - x)ᵀ; of APIC alone [m²/s]
-    std::vector<PointState> points;  // (#bodies) empty for those of domains
-    std::vector<double> top_speed;   // (#bodies) that any corner has reached lately [m/s]
-    double last_dt = 0;              // of the last step, 0 before the first [s]
+    std::vector<PointState> points;     // (#bodies) empty for those of domains
+    std::vector<double> top_speed;      // (#bodies) that any corner has reached lately [m/s]
+    std::vector<HeldContact> contacts;  // that the last step ended with
+    double last_dt = 0;                 // of the last step, 0 before the first [s]
     double dt_limit = std::numeric_limits<
         double>::infinity();  // what failed and unstable steps left of dt [s]
 };

@@ -26,7 +26,8 @@ void Stepper::advance(State& state, double end, double dt) {
             std::min({longest,
                       state.dt_limit,
                       colliders_.largest_step(state.x, state.v, state.time, longest),
-                      surfaces_.largest_step(state.x, surface_speeds(state), longest),
+                      surfaces_.largest_step(
+                          {state.x, state.v, state.top_speed, state.contacts}, longest),
                       relative_limit(state)});
         const double n = std::max(1.0, std::ceil(remaining / allowed - rounding));
         const double length = remaining / n;

@@ -29,15 +29,14 @@ std::vector<IncrementalPotential::ElasticBody> elastic_bodies(Assembly& assembly
     return result;
 }
 
-std::vector<SurfaceBody> surface_bodies(const Scene& scene, const Assembly& assembly) {
-    std::vector<SurfaceBody> result;
+std::vector<ContactSurface> contact_surfaces(const Scene& scene, const Assembly& assembly) {
+    std::vector<ContactSurface> result;
     if (scene.contact.mode == Contact::Mode::Surface)
         for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
             const AssembledBody& body = assembly.bodies[b];
             if (!body.points)
-                result.push_back({&body.lattice,
-                                  body.begin,
-                                  ContactSurface(scene.bodies[b], body.lattice, body.begin)});
+                result.emplace_back(
+                    scene.bodies[b], body.lattice, body.begin, static_cast<int>(b));
         }
     return result;
 }
@@ -48,18 +47,11 @@ Stepper::Stepper(const Scene& scene, Assembly& assembly)
     : scene_(scene),
       assembly_(assembly),
       colliders_(scene.colliders, assembly.contact_corners()),
-      surfaces_(surface_bodies(scene, assembly), scene.contact.friction),
+      friction_(scene),
+      surfaces_(contact_surfaces(scene, assembly), friction_),
       potential_(map_, elastic_bodies(assembly), {&colliders_, &surfaces_}, make_points()) {
     for (const AssembledBody& body : assembly.bodies)
         ranges_.push_back({body.begin, body.end, body.cell_size, body.kernel});
-}
-
-std::vector<double> Stepper::surface_speeds(const State& state) const {
-    std::vector<double> speeds;
-    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b)
-        if (!assembly_.bodies[b].points)
-            speeds.push_back(state.top_speed[b]);
-    return speeds;
 }
 
 void Stepper::begin_step(const State& state, double dt, Scheme scheme) {
@@ -198,7 +190,7 @@ void Stepper::prescribe_dofs(const State& state, double dt) {
 
 void Stepper::exchange_contact(const State& state, double dt) {
     // Surface contact is between domains: points meet bodies on the grid in any case.
-    std::vector<ContactPair> pairs;
+    std::vector<GridPair> pairs;
     const std::vector<AssembledBody>& bodies = assembly_.bodies;
     for (std::size_t i = 0; i < bodies.size(); ++i)
         for (std::size_t j = i + 1; j < bodies.size(); ++j)
@@ -206,16 +198,14 @@ void Stepper::exchange_contact(const State& state, double dt) {
                 || bodies[j].points)
                 pairs.push_back({{bodies[i].begin, bodies[i].end},
                                  {bodies[j].begin, bodies[j].end},
-                                 std::max(bodies[i].lattice.edge, bodies[j].lattice.edge)});
+                                 std::max(bodies[i].lattice.edge, bodies[j].lattice.edge),
+                                 friction_.between(int(i), int(j))});
     if (pairs.empty())
         return;
     Field& change = corner_;
     change = moved_;
-    exchange_on_grid(pairs,
-                     {state.x, assembly_.mass, assembly_.outside, prescribed_.is_free},
-                     dt,
-                     scene_.contact.friction,
-                     change);
+    exchange_on_grid(
+        pairs, {state.x, assembly_.mass, assembly_.outside, prescribed_.is_free}, dt, change);
     move_through_grid(change);
 }
 

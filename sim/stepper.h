@@ -124,13 +124,12 @@ class Stepper {
                          double time_end,
                          NewtonSummary& summary);
 
-    std::vector<double> surface_speeds(const State& state) const;
-
     const Scene& scene_;
     Assembly& assembly_;
     std::vector<CornerMap::BodyRange> ranges_;
     CornerMap map_;
     ColliderContact colliders_;
+    PairFriction friction_;
     SurfaceContact surfaces_;                           // empty where contact is on the grid
     std::vector<std::unique_ptr<PointEnergy>> points_;  // (#bodies)
     IncrementalPotential potential_;

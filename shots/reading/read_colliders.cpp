@@ -65,12 +65,18 @@ std::vector<sim::Collider> read_colliders(TableReader& root) {
     return colliders;
 }
 
-sim::Contact read_contact(TableReader table) {
+sim::Contact read_contact(TableReader table, const std::vector<sim::Body>& bodies) {
     using Mode = sim::Contact::Mode;
     sim::Contact contact;
     contact.mode = table.choice<Mode>(
-        "mode", {{"grid", Mode::Grid}, {"surface", Mode::Surface}}, {}, "grid");
+        "mode", {{"surface", Mode::Surface}, {"grid", Mode::Grid}}, {}, "surface");
     contact.friction = read_friction(table);
+    for (TableReader& pair : table.tables("pair")) {
+        contact.pairs.push_back({{pair.reference("body", "body", names_of(bodies)),
+                                  pair.reference("with", "body", names_of(bodies))},
+                                 read_friction(pair)});
+        pair.finish();
+    }
     table.finish();
     return contact;
 }

@@ -6,14 +6,6 @@
 namespace shots {
 namespace {
 
-template <typename Named>
-std::vector<std::string> names_of(const std::vector<Named>& things) {
-    std::vector<std::string> names;
-    for (const Named& thing : things)
-        names.push_back(thing.name);
-    return names;
-}
-
 std::array<bool, 3> read_axes(TableReader& table, const std::string& name) {
     const std::vector<std::string> axes{"x", "y", "z"};
     const std::vector<std::string> given = table.words(name, axes, {}, axes);

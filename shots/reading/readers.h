@@ -12,6 +12,15 @@
 
 namespace shots {
 
+/// The names of things that have one.
+template <typename Named>
+std::vector<std::string> names_of(const std::vector<Named>& things) {
+    std::vector<std::string> names;
+    for (const Named& thing : things)
+        names.push_back(thing.name);
+    return names;
+}
+
 /// What points cannot do, for messages.
 inline constexpr const char* points_without_bdf2 =
     "'steps' = 'bdf2' cannot move points: use implicit, semi_implicit or explicit";
@@ -75,7 +84,7 @@ std::vector<sim::Probe> read_probes(TableReader& root, const std::vector<sim::Bo
 std::vector<sim::Collider> read_colliders(TableReader& root);
 
 /// [contact]
-sim::Contact read_contact(TableReader table);
+sim::Contact read_contact(TableReader table, const std::vector<sim::Body>& bodies);
 
 /// frames = "1-48"
 FrameRange read_frames(TableReader& root);

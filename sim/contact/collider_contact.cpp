@@ -11,7 +11,6 @@ namespace sim {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double slip_speed = 1e-3;    // [m/s]
 constexpr double impact_depth = 0.01;  // in domain edges
 constexpr double share_of_thickness =
     0.4;  // that a corner may pass in a step where it is about to touch
@@ -64,7 +63,7 @@ void ColliderContact::for_touching(const Field& x, const Visit& visit) const {
             const double depth =
                 depth_of(corners_[k], colliders_[j], poses_[j], position, normal);
             const Grip& grip = grips_[k * colliders_.size() + j];
-            if (depth > 0 || grip.force > 0)
+            if (depth > 0 || grip.holds())
                 visit(Touch{corners_[k].corner, stiffness_[k], normal, depth, grip});
         }
     }
@@ -82,27 +81,21 @@ void ColliderContact::begin_step(const Field& x_n,
         const double v = top_speed[corner.body];
         stiffness_[k] = std::max(corner.stiffness, corner.mass * v * v / (stop * stop));
     }
-    const double slip_length = slip_speed * dt;
     for (std::size_t j = 0; j < colliders_.size(); ++j) {
         const MovingCollider& collider = colliders_[j];
         const Pose& start = start_poses_[j] = collider.pose(time);
         const Pose& end = poses_[j] = collider.pose(time + dt);
         for (std::size_t k = 0; k < corners_.size(); ++k) {
-            Grip& grip = grips_[k * colliders_.size() + j];
-            grip = {};
             const Vec3 x = unpadded(x_n[corners_[k].corner]);
             Vec3 normal;
             const double depth = depth_of(corners_[k], collider, start, x, normal);
             touched_[k * colliders_.size() + j] = depth > 0;
-            const Friction& friction = collider.friction();
-            const double force = friction.coefficient * stiffness_[k] * depth;
-            if (!(depth > 0) || !(slip_length > 0) || !(friction.stick || force > 0))
-                continue;
-            grip.normal = end.R * (start.R.transpose() * normal);
-            grip.origin = end.carry(start.bring_back(x));
-            grip.force = friction.stick ? infinity : force;
-            grip.slip_length = friction.stick ? infinity : slip_length;
-            grip.stiffness = friction.stick ? stiffness_[k] : force / slip_length;
+            grips_[k * colliders_.size() + j] = Grip::of(collider.friction(),
+                                                         stiffness_[k],
+                                                         depth,
+                                                         dt,
+                                                         end.R * (start.R.transpose() * normal),
+                                                         end.carry(start.bring_back(x)));
         }
     }
 }
@@ -144,33 +137,19 @@ double ColliderContact::largest_step(const Field& x,
 }
 
 Vec3 ColliderContact::gradient_of(const Touch& touch, const Field& x, double& energy) const {
-    const Grip& grip = touch.grip;
     energy += touch.stiffness / 2 * touch.depth * touch.depth;
     Vec3 g = -touch.stiffness * touch.depth * touch.normal;
-    if (grip.force > 0) {
-        const Vec3 slip = tangential(unpadded(x[touch.corner]) - grip.origin, grip.normal);
-        const double y = slip.norm();
-        const bool holds = y < grip.slip_length;
-        energy += holds ? grip.stiffness / 2 * y * y : grip.force * (y - grip.slip_length / 2);
-        g += (holds ? grip.stiffness : grip.force / y) * slip;
-    }
+    if (touch.grip.holds())
+        energy += touch.grip.add_gradient(unpadded(x[touch.corner]), g);
     return g;
 }
 
 Mat3 ColliderContact::hessian_of(const Touch& touch, const Field& x) const {
-    const Grip& grip = touch.grip;
     Mat3 H = Mat3::Zero();
     if (touch.depth > 0)
         H += touch.stiffness * touch.normal * touch.normal.transpose();
-    if (grip.force > 0) {
-        const Mat3 P = Mat3::Identity() - grip.normal * grip.normal.transpose();
-        const Vec3 slip = P * (unpadded(x[touch.corner]) - grip.origin);
-        const double y = slip.norm();
-        if (y < grip.slip_length)
-            H += grip.stiffness * P;
-        else
-            H += grip.force / y * (P - slip * slip.transpose() / (y * y));
-    }
+    if (touch.grip.holds())
+        H += touch.grip.hessian(unpadded(x[touch.corner]));
     return H;
 }
 

@@ -3,6 +3,7 @@
 
 #include "sim/base/field.h"
 #include "sim/contact/contact_energy.h"
+#include "sim/contact/grip.h"
 #include "sim/contact/moving_collider.h"
 
 #include <vector>
@@ -13,23 +14,19 @@ namespace sim {
 struct ContactCorner {
     int corner = 0;  // in the field of all corners
     int body = 0;
-    double outside = 0;  // distance that it sticks out of the body's surface at rest; < 0: lies inside [m]
+    double outside =
+        0;  // distance that it sticks out of the body's surface at rest; < 0: lies inside [m]
     double stiffness = 0;  // k of the penalty [N/m]
     double mass = 0;       // [kg]
     double edge = 0;       // of its body's domains, s [m]
 };
 
-/// Σ over corners and colliders of
+/// Σ over corners and colliders of  k/2 d² + friction (Grip),   d = max(0, -(gap + outside)).
 ///
-///   k/2 d² + mu N D(|u_t|),   d = max(0, -(gap + outside)),   D(y) = y²/(2 e) for y < e, else y - e/2
-///
-/// d [m] is the penetration of the body's surface where the collider is at the end of the step, u_t the displacement in
-/// the step relative to the collider and along its tangent plane, N = k d the normal force at the start of the step
-/// (plane and N are lagged, which makes friction a convex potential), e = slip_speed dt the displacement below which
-/// friction holds elastically instead of sliding. Friction "stick" holds what touched at the start of the step like a
-/// spring, k/2 |u_t|², which no force makes slide. k = contact_stiffness E s leaves a depth p s / (k / s) under a pressure p,
-/// i.e. less than a thousandth of a domain for bodies that carry their own weight; corners of a body whose top speed
-/// lately was v meet m v² / d_impact² where that is more: d_impact = s/100 stops one that comes so fast.
+/// d [m] is the penetration of the body's surface where the collider is at the end of the step; friction resists the
+/// displacement in the step relative to the collider. k = contact_stiffness E s leaves a depth p s / (k / s) under a
+/// pressure p, i.e. less than a thousandth of a domain for bodies that carry their own weight; corners of a body whose
+/// top speed lately was v meet m v² / d_impact² where that is more: d_impact = s/100 stops one that comes so fast.
 class ColliderContact : public ContactEnergy {
   public:
     ColliderContact(const std::vector<Collider>& colliders, std::vector<ContactCorner> corners);
@@ -67,18 +64,6 @@ class ColliderContact : public ContactEnergy {
     double deepest_penetration(const Field& x, double time) const;
 
   private:
-    /// Friction of a corner on a collider, fixed at the start of a step.
-    struct Grip {
-        Vec3 normal{
-            0,
-            0,
-            1};  // of the tangent plane, as the collider carries it to the end of the step
-        Vec3 origin{0, 0, 0};  // x_n, as the collider carries it
-        double force = 0;      // that slipping meets, infinite: sticks, 0: nothing touched [N]
-        double slip_length = 0;  // e [m]
-        double stiffness = 0;    // below e [N/m]
-    };
-
     struct Touch {
         int corner = 0;
         double stiffness = 0;  // k of the penalty [N/m]
@@ -101,7 +86,8 @@ class ColliderContact : public ContactEnergy {
     std::vector<ContactCorner> corners_;
     std::vector<double> stiffness_;  // (#corners) k of this step
     std::vector<char> touched_;      // (#corners × #colliders) at the start of the step
-    std::vector<Grip> grips_;        // (#corners × #colliders)
+    std::vector<Grip>
+        grips_;  // (#corners × #colliders) as the colliders carry them to the end of the step
     std::vector<Pose> start_poses_,
         poses_;  // (#colliders) at the start and the end of the step
 

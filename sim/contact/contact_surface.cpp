@@ -14,28 +14,35 @@ namespace {
 constexpr double spacing = 0.5;    // of samples, in domain edges
 constexpr double cluster = 0.4;    // at most one vertex per cube of this edge, in domain edges
 constexpr double voxel = 1.0 / 3;  // of the distance field, in domain edges
+constexpr double shell_depth = 2.5;  // in domain edges
 
 struct Sample {
     Vec3 position{0, 0, 0};
     double area = 0;
 };
 
-/// The vertices of a mesh, then the middles of equal parts of its triangles, which carry the area.
+/// The vertices of a mesh, then points on its triangles no further apart than `distance`. Each part of a triangle
+/// gives a third of its area to each of its corners.
 std::vector<Sample> samples_of(const assets::TriangleMesh& mesh, double distance) {
     std::vector<Sample> samples;
     for (const Vec3& x : mesh.positions)
         samples.push_back({x, 0});
-    for (const auto& [a, b, c] : mesh.triangles) {
-        const Vec3 &A = mesh.positions[a], &B = mesh.positions[b], &C = mesh.positions[c];
+    for (const auto& triangle : mesh.triangles) {
+        const Vec3 &A = mesh.positions[triangle[0]], &B = mesh.positions[triangle[1]],
+                   &C = mesh.positions[triangle[2]];
         const double longest = std::max({(B - A).norm(), (C - B).norm(), (A - C).norm()});
         const int n = std::max(1, static_cast<int>(std::ceil(longest / distance)));
-        const double area = (B - A).cross(C - A).norm() / 2 / (n * n);
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < n - i; ++j)
-                for (int down = 0; down < (j + 1 < n - i ? 2 : 1); ++down) {
-                    const double u = (i + (1 + down) / 3.0) / n, v = (j + (1 + down) / 3.0) / n;
-                    samples.push_back({A + u * (B - A) + v * (C - A), area});
-                }
+        const double third = (B - A).cross(C - A).norm() / 6 / (n * n);
+        for (int i = 0; i <= n; ++i)
+            for (int j = 0; j <= n - i; ++j) {
+                // Of six parts around an inner point; three on an edge, one at a corner.
+                const int zeros = (i == 0) + (j == 0) + (i + j == n);
+                const double area = third * (zeros == 0 ? 6 : zeros == 1 ? 3 : 1);
+                if (zeros == 2)
+                    samples[triangle[i == n ? 1 : j == n ? 2 : 0]].area += area;
+                else
+                    samples.push_back({A + (B - A) * i / n + (C - A) * j / n, area});
+            }
     }
     return samples;
 }
@@ -64,9 +71,16 @@ assets::DistanceField field_of(const Body& body, double edge) {
 
 }  // namespace
 
-ContactSurface::ContactSurface(const Body& body, const Lattice& lattice, int first_corner)
-    : distance(field_of(body, lattice.edge)) {
-    const double s = lattice.edge;
+ContactSurface::ContactSurface(const Body& body,
+                               const Lattice& body_lattice,
+                               int first_corner,
+                               int index)
+    : distance(field_of(body, body_lattice.edge)),
+      lattice(&body_lattice),
+      scene_body(index),
+      begin(first_corner),
+      cells(body_lattice) {
+    const double s = lattice->edge;
     const assets::Surface surface = assets::make_surface(body.source, spacing * s);
     const std::vector<Sample> samples =
         thinned(samples_of(surface.mesh, spacing * s), cluster * s);
@@ -78,20 +92,45 @@ ContactSurface::ContactSurface(const Body& body, const Lattice& lattice, int fir
         high = high.cwiseMax(sample.position);
     }
     thickness = (high - low).minCoeff();
-    const std::vector<Binding> bindings = bind_points(lattice, points);
+    const std::vector<Binding> bindings = bind_points(*lattice, points);
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const int p = bindings[i].domain;
-        const double mu = lattice.mu[p], lambda = lattice.lambda[p];
+        const double mu = lattice->mu[p], lambda = lattice->lambda[p];
         ContactVertex vertex;
         vertex.rest = points[i];
         vertex.weights = bindings[i].weights;
         vertex.area = samples[i].area;
         vertex.young_modulus = mu * (3 * lambda + 2 * mu) / (lambda + mu);
-        vertex.wave_speed = std::sqrt(vertex.young_modulus / lattice.density[p]);
+        vertex.wave_speed = std::sqrt(vertex.young_modulus / lattice->density[p]);
         for (int a = 0; a < 8; ++a)
-            vertex.corners[a] = first_corner + lattice.corners[p][a];
+            vertex.corners[a] = begin + lattice->corners[p][a];
         vertices.push_back(vertex);
     }
+    for (int p = 0; p < lattice->n_domains(); ++p) {
+        Vec3 ignored;
+        if (distance.at(domain_centre(p), ignored) > -shell_depth * s)
+            shell.push_back(p);
+    }
+}
+
+Vec3 ContactSurface::domain_centre(int p) const {
+    const auto& cell = lattice->cell[p];
+    return lattice->origin
+           + lattice->edge * (Vec3(cell[0], cell[1], cell[2]) + Vec3::Constant(0.5));
+}
+
+std::array<Vec3, 8> ContactSurface::domain_corners(int p, const Field& x) const {
+    std::array<Vec3, 8> corners;
+    for (int a = 0; a < 8; ++a)
+        corners[a] = unpadded(x[begin + lattice->corners[p][a]]);
+    return corners;
+}
+
+Bounds ContactSurface::bounds(const Field& x) const {
+    Bounds bounds;
+    for (int c = 0; c < lattice->n_corners(); ++c)
+        bounds.add(unpadded(x[begin + c]));
+    return bounds;
 }
 
 }  // namespace sim

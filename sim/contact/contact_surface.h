@@ -2,9 +2,12 @@
 #pragma once
 
 #include "assets/generators/distance_field.h"
+#include "sim/base/field.h"
+#include "sim/embedding/cell_index.h"
 #include "sim/lattice/lattice.h"
 
 #include <array>
+#include <limits>
 #include <vector>
 
 namespace sim {
@@ -17,16 +20,54 @@ struct ContactVertex {
     double area = 0;                  // of the surface that it stands for, at rest [m²]
     double young_modulus = 0;         // there [Pa]
     double wave_speed = 0;            // sqrt(E / rho) there [m/s]
+
+    /// Now, from the field of all corners.   [m]
+    Vec3 position(const Field& x) const {
+        Vec3p sum{};
+        for (int a = 0; a < 8; ++a)
+            sum += weights[a] * x[corners[a]];
+        return unpadded(sum);
+    }
+};
+
+/// A box along the axes; empty before the first point.
+struct Bounds {
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+
+    void add(const Vec3& x) {
+        low = low.cwiseMin(x);
+        high = high.cwiseMax(x);
+    }
+
+    bool contains(const Vec3& x, double margin) const {
+        return ((x - low).array() >= -margin).all() && ((high - x).array() >= -margin).all();
+    }
+
+    double distance(const Bounds& other) const {
+        return (other.low - high).cwiseMax(low - other.high).cwiseMax(0.0).norm();
+    }
 };
 
 struct ContactSurface {
-    /// Corners of the body begin at `first_corner` in the field of all corners. The vertices are two to three per domain
-    /// edge, those of the mesh first, so that they keep its corners.
-    ContactSurface(const Body& body, const Lattice& lattice, int first_corner);
+    /// Corners of the body begin at `first_corner` in the field of all corners. `lattice` outlives the surface. The
+    /// vertices are about two per domain edge, those of the mesh first, so that they keep its corners.
+    ContactSurface(const Body& body, const Lattice& body_lattice, int first_corner, int index);
 
     std::vector<ContactVertex> vertices;
     assets::DistanceField distance;  // at rest
     double thickness = 0;            // smallest extent of its bounds [m]
+    const Lattice* lattice = nullptr;
+    int scene_body = 0;      // index of the body in the scene
+    int begin = 0;           // of its corners in the field of all corners
+    CellIndex cells;         // of the lattice
+    std::vector<int> shell;  // domains that a vertex may be found in before it is pushed out
+
+    /// At rest.   [m]
+    Vec3 domain_centre(int p) const;
+
+    /// Now, from the field of all corners x.   (8) [m]
+    std::array<Vec3, 8> domain_corners(int p, const Field& x) const;
+    Bounds bounds(const Field& x) const;
 };
 
 }  // namespace sim

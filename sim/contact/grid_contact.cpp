@@ -206,12 +206,11 @@ class PairGrid {
 
 }  // namespace
 
-void exchange_on_grid(const std::vector<ContactPair>& pairs,
+void exchange_on_grid(const std::vector<GridPair>& pairs,
                       const ContactFields& corners,
                       double dt,
-                      const Friction& friction,
                       Field& velocity) {
-    for (const auto& [first, second, cell_size] : pairs) {
+    for (const auto& [first, second, cell_size, friction] : pairs) {
         const Bounds where = common(bounds_of(first, corners.x, velocity, dt),
                                     bounds_of(second, corners.x, velocity, dt),
                                     cell_size);

@@ -14,9 +14,10 @@ struct ContactBody {
 };
 
 /// Two bodies that may meet, and the cells of the grid on which they do.
-struct ContactPair {
+struct GridPair {
     ContactBody first, second;
     double cell_size = 0;  // [m]
+    Friction friction;
 };
 
 /// What every corner brings into contact; all indexed by corner.
@@ -32,10 +33,9 @@ struct ContactFields {
 /// smallest of the other), they exchange the impulse m1 m2 / (m1 + m2) times the approach, with Coulomb friction; each
 /// corner gets Σ_i w_i dv_i back, so that momentum is exact. Normals from the mass-weighted shape gradients of both.
 /// Repeated `contact_sweeps` times, pair after pair. Changes `velocity` (#C) [m/s].
-void exchange_on_grid(const std::vector<ContactPair>& pairs,
+void exchange_on_grid(const std::vector<GridPair>& pairs,
                       const ContactFields& corners,
                       double dt,
-                      const Friction& friction,
                       Field& velocity);
 
 }  // namespace sim

@@ -1,67 +1,70 @@
 // Bodies against each other and themselves, as an energy inside the solve: fine surface against the other's inside.
 #pragma once
 
-#include "sim/base/field.h"
 #include "sim/contact/contact_energy.h"
-#include "sim/contact/contact_surface.h"
-#include "sim/contact/point_grid.h"
-#include "sim/scene.h"
+#include "sim/contact/contact_point.h"
+#include "sim/contact/fold_watch.h"
+#include "sim/contact/grip.h"
+#include "sim/contact/pair_friction.h"
 
 #include <vector>
 
 namespace sim {
 
-/// A body that takes part; `lattice` outlives the contact.
-struct SurfaceBody {
-    const Lattice* lattice = nullptr;
-    int begin = 0;  // of its corners in the field of all corners
-    ContactSurface surface;
+/// The energy k/2 d² that a vertex of a pair of bodies had at the end of a step.   [J]
+struct HeldContact {
+    int pair = 0, vertex = 0;
+    double energy = 0;
 };
 
-/// Σ over vertices of one body inside another of  k/2 d² + mu N D(|u_t|).
+/// Σ over vertices of one body inside another of  k/2 d² + friction (Grip),   d = max(0, -(gap + n·(p - o))).
 ///
-/// The deformed domain of the other body that holds the vertex, its trilinear map inverted, gives the rest point X that
-/// the vertex has come to; the other body's distance field there gives phi(X), negative inside. So depth is measured at
-/// rest, where it is known, and its gradient n = F^-T grad phi pushes in today's directions. With p the vertex and o the
-/// point of the domain that it has met, both sums over eight corners with weights that sum to 1,
+/// d is linear in the corners while gap, n and the weights of ContactPoint are held: linearised where the step is expected
+/// to end, the energy is convex, and the solve is repeated where it has gone far from there (relinearize). Momentum is
+/// exact by construction, angular momentum as p = o there. k = stiffness E A / s for a vertex of area A, more where bodies
+/// meet faster than waves spread.
 ///
-///   d = max(0, -(phi + n·(p - o))),
-///
-/// linear in the corners while phi, n and the weights are held: linearised where the step is expected to end, the energy
-/// is convex, and the solve is repeated where it has gone far from there (relinearize). Momentum is exact by construction,
-/// angular momentum as p = o there. k = stiffness E A / s for a vertex of area A, more where bodies meet faster than waves
-/// spread. Friction as in ColliderContact, N and the tangent plane lagged.
-///
-/// Self-contact leaves out domains within 2.5 domain edges of the vertex at rest.
+/// A new linearisation may find a vertex deeper where the step starts than the step before had left it: where a fold opens
+/// on vertices that had slipped in unseen, where a vertex comes round an edge, or at the very start. To push it out at once
+/// would make energy of nothing. So the gap is shifted until the step starts with no more energy than the one before ended
+/// with (HeldContact), and comes back slowly (rest_recovery, impact_recovery): else a step of backward Euler can only lose energy.
 class SurfaceContact : public ContactEnergy {
   public:
-    SurfaceContact(std::vector<SurfaceBody> bodies, const Friction& friction);
+    SurfaceContact(std::vector<ContactSurface> bodies, const PairFriction& friction);
 
     bool empty() const { return bodies_.empty(); }
 
-    /// Finds what may touch in the step from x_n to about x_expected (#C) of length dt [s].
-    void begin_step(const Field& x_n,
-                    const Field& x_expected,
-                    const std::vector<double>& top_speed,
-                    double dt);
+    /// What a step starts with, all of the field of corners.
+    struct Start {
+        const Field &x, &v;                    // [m], [m/s]
+        const std::vector<double>& top_speed;  // (#bodies) lately [m/s]
+        const std::vector<HeldContact>& held;  // ascending
+    };
+
+    /// The longest step that moves no vertex further into a body that it may touch than a part of its thickness.   [s]
+    double largest_step(const Start& start, double dt);
+
+    /// Finds what may touch in the step to about x_expected (#C) of length dt [s].
+    void begin_step(const Start& start, const Field& x_expected, double dt);
 
     /// Linearises anew at x. Returns by how much depths differ from those of the old linearisation, at most, as a share
     /// of the domain's edge.
     double relinearize(const Field& x);
-
-    /// The longest step that moves no vertex further into a body that it may touch than a part of its thickness.   [s]
-    double largest_step(const Field& x, const std::vector<double>& top_speed, double dt) const;
 
     double add_gradient(const Field& x, Field& gradient) const override;
     void linearize(const Field& x) override;
     void add_product(const Field& u, Field& product) const override;
     void add_diagonal(Field& diagonal) const override;
 
-    /// Whether a vertex touches, at the start of the step that has led to x or at its end.
-    bool has_touch(const Field& x) const;
+    /// What the next step starts with where this one ends at x, ascending.
+    std::vector<HeldContact> held(const Field& x) const;
+
+    /// Whether a vertex has begun or ceased to touch since the start of the step that has led to x.
+    bool has_changed_touch(const Field& x) const;
 
     /// What contact takes from velocities v (#C) of corners of masses m (#C) [kg] that would move them from x in an
-    /// explicit step: the part that would end inside, as impulses between vertex and domain.
+    /// explicit step of dt: the part that would end inside, as impulses between vertex and domain, and friction of up to
+    /// mu times as much. Inelastic, so that no energy comes of it. Repeated, vertex after vertex, `restrain_sweeps` times.
     void restrain(const Field& x, const Field& m, double dt, Field& v) const;
 
     /// Deepest penetration and smallest gap at x, as shares of the domain's edge; gaps are known up to `reach`.
@@ -73,59 +76,47 @@ class SurfaceContact : public ContactEnergy {
     Report report(const Field& x) const;
 
   private:
-    struct Contact {
-        const ContactVertex* vertex = nullptr;
-        int pair = 0;
-        std::array<int, 8> corners{};  // of the domain
-        std::array<double, 8> weights{};
-        double phi = 0, edge = 0;  // [m]
-        Vec3 normal{0, 0, 0};      // n
-        double stiffness = 0;      // k [N/m]
-        // Friction, fixed at the start of the step.
-        Vec3 start{0, 0, 0};  // p - o then [m]
-        double grip_force = 0, slip_length = 0, grip_stiffness = 0;
-        bool touched = false;
-        Mat3 hessian = Mat3::Zero();  // on p - o
+    struct Contact : ContactPoint {
+        int pair = 0, index = 0;  // of the vertex in its body
+        double stiffness = 0;     // k [N/m]
+        Grip grip;                // of p - o
+        double start_depth = 0;   // at the start of the step [m]
     };
 
     struct Pair {
         int of_vertices = 0, of_domains = 0;  // bodies
-        double reach = 0;  // that they may still move before anything can touch [m]
+        Friction friction;
+        double margin = 0, recovery = 0, top_speed = 0;  // of this step [m], [m], [m/s]
     };
 
-    struct Place;  // where a vertex is in a body
+    /// Where a body is and how it moves.
+    struct Extent {
+        Bounds bounds;
+        Vec3 velocity{0, 0, 0};  // mean of the corners [m/s]
+        double spread = 0;       // of the corners' velocities around it, at most [m/s]
+    };
 
-    bool may_touch(const Pair& pair, const Field& x, double margin, double& reach_left) const;
-    bool is_folded(int body, const Field& x) const;
-    void find_contacts(int pair,
-                       const Field& x,
-                       double margin,
-                       std::vector<Contact>& found) const;
-    Place locate(const SurfaceBody& body,
-                 const PointGrid& grid,
-                 const std::vector<int>& domains,
-                 const Field& x,
-                 const Vec3& point,
-                 const Vec3* rest_of_self) const;
-    bool linearize_depth(const SurfaceBody& body,
-                         const Place& place,
-                         const Field& x,
-                         Contact& contact) const;
-    void prepare(Contact& contact) const;
-    static Vec3 separation(const Contact& contact, const Field& x);
-    static void scatter(const Contact& contact, const Vec3& f, Field& field);
+    /// Of the Hessian, where it is not zero.
+    struct Row {
+        const Contact* contact = nullptr;
+        Mat3 hessian;  // on p - o
+    };
 
-    static double depth_of(const Contact& contact, const Vec3& separation) {
-        return std::max(0.0, -(contact.phi + contact.normal.dot(separation)));
-    }
+    std::vector<Extent> extents(const Start& start) const;
+    double approach(const Pair& pair, const std::vector<Extent>& extents) const;
+    double distance(const Pair& pair, const std::vector<Extent>& extents, const Field& x);
+    void find(const Field& x);
+    double mismatch(const std::vector<Contact>& before, const Field& x) const;
+    Contact prepared(const ContactPoint& point, int pair) const;
+    double held_energy(int pair, int vertex) const;
 
-    std::vector<SurfaceBody> bodies_;
-    Friction friction_;
+    std::vector<ContactSurface> bodies_;
+    std::vector<FoldWatch> folds_;  // (#bodies)
     std::vector<Pair> pairs_;
-    std::vector<std::vector<int>> shell_;   // (#bodies) domains near the surface
-    std::vector<int> active_;               // pairs that may touch in this step
-    std::vector<double> margins_, speeds_;  // (#pairs) of this step [m], [m/s]
-    std::vector<Contact> contacts_;
+    std::vector<int> active_;        // pairs that may touch in this step
+    std::vector<Contact> contacts_;  // by pair, then vertex
+    std::vector<Row> rows_;
+    std::vector<HeldContact> held_;  // at the start of the step
     Field x_n_;
     double dt_ = 0;
 };

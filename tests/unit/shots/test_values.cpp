@@ -48,6 +48,8 @@ TEST_CASE("the whole vocabulary is read") {
     CHECK(scene.colliders.at(0).friction.coefficient == 0.4);
     CHECK(shot.render.props.at(0).point == Vec3(0, 0, -0.6));
     CHECK(scene.contact.friction.coefficient == 0.3);
+    CHECK(scene.contact.pairs.at(0).bodies == std::array<std::string, 2>{"bar", "bar"});
+    CHECK(scene.contact.pairs.at(0).friction.coefficient == 0);
     CHECK(std::get<std::string>(scene.probes.at(1).at) == "soft");
     CHECK(shot.render.samples == 64);
 }

@@ -33,11 +33,11 @@ struct Cubes {
     }
 
     void exchange(const sim::Friction& friction) {
-        std::vector<sim::ContactPair> pairs;
+        std::vector<sim::GridPair> pairs;
         for (std::size_t i = 0; i < bodies.size(); ++i)
             for (std::size_t j = i + 1; j < bodies.size(); ++j)
-                pairs.push_back({bodies[i], bodies[j], s});
-        sim::exchange_on_grid(pairs, {x, mass, outside, is_free}, dt, friction, velocity);
+                pairs.push_back({bodies[i], bodies[j], s, friction});
+        sim::exchange_on_grid(pairs, {x, mass, outside, is_free}, dt, velocity);
     }
 
     Vec3 momentum(int b) const {

@@ -1,0 +1,255 @@
+#include "sim/contact/contact_search.h"
+
+#include "sim/base/parallel.h"
+#include "sim/contact/point_grid.h"
+#include "sim/embedding/trilinear.h"
+
+#include <Eigen/LU>
+
+#include <cmath>
+
+namespace sim {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr int vertex_chunk = 256;
+constexpr double curvature =
+    0.25;  // of a domain's map, by which its linear part may err, in domain edges
+constexpr int bisections = 6;  // of the way into a body
+constexpr double least_gradient =
+    0.1;  // of the distance; where it is less, in the middle of a body, no side is nearer
+constexpr double seam =
+    1e-3;  // beyond a domain where rounding may put what is in its neighbour, in domain edges
+
+/// A deformed domain, and the linear part of the map from the world to its cube.
+struct Candidate {
+    int domain = 0;
+    std::array<Vec3, 8> corners;
+    Vec3 centre{0, 0, 0};
+    Mat3 to_local;
+    double radius = 0;
+};
+
+/// Where a point is in a body.
+struct Place {
+    int domain = -1;
+    Vec3 xi{0, 0, 0};
+    double outside = infinity;  // of [0,1]³
+};
+
+/// A piece of a body's surface at rest, seen from a rest point: how far outside, and its gradient.
+struct Plane {
+    double gap = 0;
+    Vec3 normal{0, 0, 0};
+};
+
+double outside_of_cube(const Vec3& xi) {
+    return (-xi).cwiseMax(xi - Vec3::Ones()).cwiseMax(0.0).maxCoeff();
+}
+
+/// Newton's method from xi for its trilinear map to hit a point; false where the domain is inverted or too distorted.
+bool invert_trilinear(const std::array<Vec3, 8>& corners, const Vec3& point, Vec3& xi) {
+    for (int iteration = 0; iteration < 8; ++iteration) {
+        const auto w = trilinear_weights(xi);
+        Vec3 at = Vec3::Zero();
+        for (int a = 0; a < 8; ++a)
+            at += w[a] * corners[a];
+        const Mat3 gradient = trilinear_gradient(xi, 1, corners);
+        if (!(gradient.determinant() > 0))
+            return false;
+        const Vec3 step = gradient.inverse() * (point - at);
+        xi += step;
+        if (!(xi.cwiseAbs().maxCoeff() < 4))
+            return false;
+        if (step.squaredNorm() < 1e-24)
+            break;
+    }
+    return true;
+}
+
+class Search {
+  public:
+    Search(const ContactSurface& of_vertices,
+           const ContactSurface& of_domains,
+           const Field& x,
+           const Field& x_n,
+           double margin)
+        : a_(of_vertices),
+          b_(of_domains),
+          x_(x),
+          x_n_(x_n),
+          margin_(margin),
+          beyond_(margin / of_domains.lattice->edge),
+          candidates_(candidates()),
+          grid_(centres(), search_radius_) {}
+
+    std::vector<ContactPoint> run() const {
+        if (candidates_.empty())
+            return {};
+        // Vertices in chunks of a fixed size, their contacts in order.
+        const int n = static_cast<int>(a_.vertices.size());
+        std::vector<std::vector<ContactPoint>> parts((n + vertex_chunk - 1) / vertex_chunk);
+        for_chunks(n, vertex_chunk, [&](int begin, int end) {
+            for (int v = begin; v < end; ++v)
+                look_at(a_.vertices[v], parts[begin / vertex_chunk]);
+        });
+        std::vector<ContactPoint> found;
+        for (const std::vector<ContactPoint>& part : parts)
+            found.insert(found.end(), part.begin(), part.end());
+        return found;
+    }
+
+  private:
+    /// Domains of the shell that are near the other body.
+    std::vector<Candidate> candidates() {
+        const Bounds region = a_.bounds(x_);
+        std::vector<Candidate> result;
+        for (const int p : b_.shell) {
+            Candidate candidate;
+            candidate.domain = p;
+            candidate.corners = b_.domain_corners(p, x_);
+            for (const Vec3& corner : candidate.corners)
+                candidate.centre += corner / 8;
+            for (const Vec3& corner : candidate.corners)
+                candidate.radius =
+                    std::max(candidate.radius, (corner - candidate.centre).norm());
+            candidate.radius *= 1 + 2 * beyond_;
+            const Mat3 gradient = trilinear_gradient(Vec3::Constant(0.5), 1, candidate.corners);
+            if (!(gradient.determinant() > 0)
+                || !region.contains(candidate.centre, candidate.radius))
+                continue;
+            candidate.to_local = gradient.inverse();
+            search_radius_ = std::max(search_radius_, candidate.radius);
+            bounds_.add(candidate.centre);
+            result.push_back(candidate);
+        }
+        return result;
+    }
+
+    std::vector<Vec3> centres() const {
+        std::vector<Vec3> result;
+        for (const Candidate& candidate : candidates_)
+            result.push_back(candidate.centre);
+        return result;
+    }
+
+    void look_at(const ContactVertex& vertex, std::vector<ContactPoint>& found) const {
+        const Vec3 point = vertex.position(x_);
+        if (!bounds_.contains(point, search_radius_))
+            return;
+        const Place place = locate(vertex, point);
+        ContactPoint contact;
+        if (place.domain >= 0 && linearize_gap(vertex, place, contact)
+            && contact.gap <= margin_)
+            found.push_back(contact);
+    }
+
+    Place locate(const ContactVertex& vertex, const Vec3& point) const {
+        Place best;
+        grid_.near(point, [&](int i) {
+            const Candidate& candidate = candidates_[i];
+            const Vec3 from_centre = point - candidate.centre;
+            if (from_centre.squaredNorm() > candidate.radius * candidate.radius)
+                return;
+            Vec3 xi = Vec3::Constant(0.5) + candidate.to_local * from_centre;
+            if (outside_of_cube(xi) > std::min(beyond_, best.outside) + curvature
+                || is_neighbour(vertex, candidate.domain)
+                || !invert_trilinear(candidate.corners, point, xi))
+                return;
+            const double outside = outside_of_cube(xi);
+            if (outside > beyond_ || outside > best.outside
+                || (outside == best.outside && candidate.domain > best.domain)
+                || (outside > seam && is_in_another(candidate.domain, xi)))
+                return;
+            best = {candidate.domain, xi, outside};
+        });
+        return best;
+    }
+
+    bool is_neighbour(const ContactVertex& vertex, int domain) const {
+        const double least = neighbourhood * b_.lattice->edge;
+        return &a_ == &b_
+               && (b_.domain_centre(domain) - vertex.rest).squaredNorm() < least * least;
+    }
+
+    /// Whether the rest point that the map of one domain gives lies in another.
+    bool is_in_another(int domain, const Vec3& xi) const {
+        std::array<int, 3> cell = b_.lattice->cell[domain];
+        for (int k = 0; k < 3; ++k)
+            cell[k] += static_cast<int>(std::floor(xi[k]));
+        const int there = b_.cells.find(cell);
+        return there >= 0 && there != domain;
+    }
+
+    Vec3 rest_point(int domain, const Vec3& xi) const {
+        return b_.domain_centre(domain) + b_.lattice->edge * (xi - Vec3::Constant(0.5));
+    }
+
+    /// The plane of the surface that a rest point has met: the nearest, or, of one that comes from outside, where its way
+    /// from where it was at the start of the step goes in. Near an edge the nearest may be a side that it never passed.
+    Plane met_plane(const ContactVertex& vertex, const Place& place, const Vec3& X) const {
+        Plane plane = plane_at(X);
+        Vec3 xi = place.xi;
+        if (plane.gap >= 0
+            || !invert_trilinear(
+                b_.domain_corners(place.domain, x_n_), vertex.position(x_n_), xi))
+            return plane;
+        Vec3 outside = rest_point(place.domain, xi), inside = X;
+        if (plane_at(outside).gap < 0)
+            return plane;
+        for (int k = 0; k < bisections; ++k) {
+            const Vec3 middle = (outside + inside) / 2;
+            (plane_at(middle).gap < 0 ? inside : outside) = middle;
+        }
+        plane.normal = plane_at(inside).normal;
+        plane.gap = plane.normal.dot(X - inside);
+        return plane;
+    }
+
+    Plane plane_at(const Vec3& X) const {
+        Plane plane;
+        plane.gap = b_.distance.at(X, plane.normal);
+        return plane;
+    }
+
+    bool linearize_gap(const ContactVertex& vertex,
+                       const Place& place,
+                       ContactPoint& contact) const {
+        const Plane plane = met_plane(vertex, place, rest_point(place.domain, place.xi));
+        const double edge = b_.lattice->edge;
+        const Mat3 F = trilinear_gradient(place.xi, edge, b_.domain_corners(place.domain, x_));
+        if (!(F.determinant() > 0) || !(plane.normal.norm() > least_gradient))
+            return false;
+        const Vec3 n = F.inverse().transpose() * plane.normal.normalized();
+        contact.vertex = &vertex;
+        contact.gap = plane.gap / n.norm();
+        contact.normal = n.normalized();
+        contact.weights = trilinear_weights(place.xi);
+        contact.edge = edge;
+        for (int a = 0; a < 8; ++a)
+            contact.corners[a] = b_.begin + b_.lattice->corners[place.domain][a];
+        return true;
+    }
+
+    const ContactSurface &a_, &b_;
+    const Field &x_, &x_n_;
+    double margin_ = 0;
+    double beyond_ = 0;         // a domain that its map is continued, in domain edges
+    double search_radius_ = 0;  // around the centre of any candidate that it may hold [m]
+    Bounds bounds_;             // of the candidates' centres
+    std::vector<Candidate> candidates_;
+    PointGrid grid_;
+};
+
+}  // namespace
+
+std::vector<ContactPoint> find_contacts(const ContactSurface& of_vertices,
+                                        const ContactSurface& of_domains,
+                                        const Field& x,
+                                        const Field& x_n,
+                                        double margin) {
+    return Search(of_vertices, of_domains, x, x_n, margin).run();
+}
+
+}  // namespace sim
