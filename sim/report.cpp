@@ -105,6 +105,8 @@ Stats stats_of(Assembly& assembly, const Stepper& stepper, const State& state) {
         for (int j = 0; j < 3; ++j)
             stats.angular_momentum +=
                 assembly.mass[c][0] * Vec3::Unit(j).cross(unpadded(state.affine[c].column[j]));
+    for (const HeldContact& contact : state.contacts)
+        stats.elastic_energy += contact.energy;
     stats.collider_penetration = stepper.colliders().deepest_penetration(state.x, state.time);
     const SurfaceContact::Report contact = stepper.surfaces().report(state.x);
     stats.penetration = contact.penetration;

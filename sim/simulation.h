@@ -16,7 +16,8 @@ namespace sim {
 /// One row of stats.csv. Energies in J, momenta in kg m/s and kg m²/s about the origin.
 struct Stats {
     int steps = 0, newton_iterations = 0, cg_iterations = 0;  // since the frame before
-    double kinetic_energy = 0, elastic_energy = 0, gravitational_energy = 0;
+    double kinetic_energy = 0, elastic_energy = 0,
+           gravitational_energy = 0;  // elastic: of surfaces that touch too
     Vec3 linear_momentum{0, 0, 0}, angular_momentum{0, 0, 0};
     double total_mass = 0;  // on the degrees of freedom [kg]
     double smallest_J = 0;  // over all domains, now

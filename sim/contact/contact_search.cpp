@@ -207,6 +207,19 @@ class Search {
         return plane;
     }
 
+    /// Along the surface's outer normal at a vertex today, F^-T grad phi. Where a body is crushed, a vertex also nears
+    /// places of its own side: only what faces it can be met.
+    Vec3 outward(const ContactVertex& vertex) const {
+        std::array<Vec3, 8> at;
+        for (int a = 0; a < 8; ++a)
+            at[a] = unpadded(x_[vertex.corners[a]]);
+        const Mat3 F =
+            trilinear_gradient(local_coordinates(vertex.weights), a_.lattice->edge, at);
+        Vec3 gradient;
+        a_.distance.at(vertex.rest, gradient);
+        return F.inverse().transpose() * gradient;
+    }
+
     Plane plane_at(const Vec3& X) const {
         Plane plane;
         plane.gap = b_.distance.at(X, plane.normal);
@@ -225,6 +238,8 @@ class Search {
         contact.vertex = &vertex;
         contact.gap = plane.gap / n.norm();
         contact.normal = n.normalized();
+        if (&a_ == &b_ && contact.normal.dot(outward(vertex)) > 0)
+            return false;
         contact.weights = trilinear_weights(place.xi);
         contact.edge = edge;
         for (int a = 0; a < 8; ++a)
