@@ -1,46 +1,19 @@
 // Experiments of [Z18], from the shot files that film them: what a body of several stiffnesses must show.
-#include "shots/shot_file.h"
-#include "sim/simulation.h"
+#include "tests/verification/experiment.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <string>
 #include <vector>
+
+using namespace tests;
 
 namespace {
 
 /// Of the pulled and pressed shots, whose states hardly depend on the step: they follow their pins.
 const std::vector<std::string> coarse_steps = {"solver.dt=4 ms"};
-
-/// The shot file `name` by `method`, with overrides "key.path=value" on top.
-shots::Shot load(const std::string& name,
-                 const std::string& method,
-                 std::vector<std::string> overrides = {}) {
-    overrides.push_back("solver.method=" + method);
-    return shots::load_shot(SOURCE_ROOT "/shots/" + name + ".toml", overrides);
-}
-
-sim::ProbeRow probe(const sim::Simulation& simulation, const std::string& name) {
-    for (const sim::ProbeRow& row : simulation.probes())
-        if (row.name == name)
-            return row;
-    FAIL("no probe " << name);
-    return {};
-}
-
-/// Mean stretch of each region that the shot probes, at `frame`.
-std::map<std::string, double> stretches(const shots::Shot& shot, int frame) {
-    sim::Simulation simulation(shot.scene, 1 / shot.fps);
-    simulation.advance_to(shot.time_of(frame));
-    std::map<std::string, double> of;
-    for (const sim::ProbeRow& row : simulation.probes())
-        if (row.is_region)
-            of[row.name] = row.stretch;
-    return of;
-}
 
 /// Height of the bar's tip where it hangs lowest in the first 12 frames, which hold its first swing.   [m]
 double lowest_tip(const std::string& method) {
@@ -52,26 +25,6 @@ double lowest_tip(const std::string& method) {
         lowest = std::min(lowest, probe(simulation, "tip").position.z());
     }
     return lowest;
-}
-
-/// Domains that share a face with a domain of another region.
-int count_boundary_domains(const sim::Lattice& lattice) {
-    std::map<std::array<int, 3>, int> region_at;
-    for (int p = 0; p < lattice.n_domains(); ++p)
-        region_at[lattice.cell[p]] = lattice.region[p];
-    const auto differs = [&](std::array<int, 3> cell, int axis, int step, int region) {
-        cell[axis] += step;
-        const auto neighbour = region_at.find(cell);
-        return neighbour != region_at.end() && neighbour->second != region;
-    };
-    int count = 0;
-    for (const auto& [cell, region] : region_at) {
-        bool is_boundary = false;
-        for (int axis = 0; axis < 3; ++axis)
-            is_boundary |= differs(cell, axis, -1, region) || differs(cell, axis, 1, region);
-        count += is_boundary;
-    }
-    return count;
 }
 
 /// Share of the pressed cube's compression that its two soft layers take, measured on its axis.

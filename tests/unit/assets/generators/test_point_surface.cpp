@@ -173,7 +173,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("no points have no surface; points nowhere and no spacing are refused") {
+TEST_CASE("no points have no surface, points nowhere and no spacing are refused") {
     const PointSurface none = point_surface({}, spacing);
     CHECK(none.positions.empty());
     CHECK(none.triangles.empty());

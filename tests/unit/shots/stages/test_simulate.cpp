@@ -308,7 +308,7 @@ TEST_CASE("a shot killed at any moment and resumed ends up with the same bytes")
     CHECK(n_begun_again == 0);
 }
 
-TEST_CASE("a signal ends the stage after the frame at hand; the same job then goes on") {
+TEST_CASE("a signal ends the stage after the frame at hand, the same job then goes on") {
     const TemporaryFolder folder;
     const auto job = make_job(folder.path(), 6);
     const pid_t child = ::fork();
