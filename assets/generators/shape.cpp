@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace assets {
 
@@ -55,6 +56,58 @@ double distance_of(const Torus& torus, const Vec3& x) {
     return std::hypot(at.radius - torus.major, at.height) - torus.minor;
 }
 
+/// The nearest point of an ellipsoid of radii e_i to x is y_i = e_i² x_i / (t + e_i²), where t puts it on the surface:
+/// g(t) = Σ (e_i x_i / (t + e_i²))² - 1 = 0. In units of the smallest radius g falls and is convex for t > -1, so Newton's
+/// method climbs to the root from where one term of the sum is 1. Its unknown is t + 1, exact where t comes close to -1.
+double distance_of(const Ellipsoid& ellipsoid, const Vec3& x) {
+    constexpr int most_steps = 50;
+    constexpr double least = 1e-12;  // keeps the nearest point unique in planes of symmetry
+    const double unit = ellipsoid.radii.minCoeff();
+    const Vec3 radii = ellipsoid.radii / unit;
+    const Vec3 beyond = (radii.array() - 1) * (radii.array() + 1);  // e_i² - 1
+    const Vec3 at = ((x - ellipsoid.center) / unit).cwiseAbs().cwiseMax(least);
+    const Vec3 weighted = radii.cwiseProduct(at);
+    double t_plus_1 = (weighted - beyond).maxCoeff();
+    for (int step = 0; step < most_steps; ++step) {
+        const Vec3 inverse = (beyond.array() + t_plus_1).inverse();
+        const Vec3 squared_terms = weighted.cwiseProduct(inverse).cwiseAbs2();
+        const double g = squared_terms.sum() - 1;
+        const double next = t_plus_1 + g / (2 * squared_terms.dot(inverse));
+        if (!(next > t_plus_1))
+            break;
+        t_plus_1 = next;
+    }
+    const Vec3 nearest = radii.array() * weighted.array() / (beyond.array() + t_plus_1);
+    return std::copysign((at - nearest).norm(), t_plus_1 - 1) * unit;
+}
+
+/// min(a, b), less by up to k/4 where they differ by less than k: a fillet between two surfaces, slope 1 at most.
+double smooth_min(double a, double b, double k) {
+    const double h = std::max(k - std::abs(a - b), 0.0);
+    return std::min(a, b) - (k > 0 ? h * h / (4 * k) : 0);
+}
+
+double distance_of(const Combination& combination, const Vec3& x) {
+    using Kind = Combination::Kind;
+    const bool of_union = combination.kind == Kind::Union;
+    double distance = signed_distance(combination.of.front().shape, x);
+    for (std::size_t i = 1; i < combination.of.size(); ++i) {
+        double other = signed_distance(combination.of[i].shape, x);
+        if (combination.kind == Kind::Difference)
+            other = -other;
+        distance = of_union ? smooth_min(distance, other, combination.smooth)
+                            : -smooth_min(-distance, -other, combination.smooth);
+    }
+    return distance;
+}
+
+double distance_of(const Copies& copies, const Vec3& x) {
+    double distance = std::numeric_limits<double>::infinity();
+    for (const auto& [Q, t] : copies.to_original)
+        distance = std::min(distance, signed_distance(copies.of.front().shape, Q * x + t));
+    return distance;
+}
+
 double support_of(const Box& box, const Vec3& direction) {
     return direction.cwiseProduct(box.min).cwiseMax(direction.cwiseProduct(box.max)).sum();
 }
@@ -80,14 +133,70 @@ double support_of(const Torus& torus, const Vec3& direction) {
            + torus.minor * direction.norm();
 }
 
+double support_of(const Ellipsoid& ellipsoid, const Vec3& direction) {
+    return direction.dot(ellipsoid.center) + direction.cwiseProduct(ellipsoid.radii).norm();
+}
+
+double support_of(const Combination& combination, const Vec3& direction) {
+    using Kind = Combination::Kind;
+    double bound = support(combination.of.front().shape, direction);
+    if (combination.kind == Kind::Difference)
+        return bound;
+    for (std::size_t i = 1; i < combination.of.size(); ++i) {
+        const double other = support(combination.of[i].shape, direction);
+        bound =
+            combination.kind == Kind::Union ? std::max(bound, other) : std::min(bound, other);
+    }
+    // A fillet of a union adds a quarter of `smooth` at most; many in one place less than `smooth` together.
+    const double n_fillets =
+        std::min<double>(static_cast<double>(combination.of.size()) - 1, 4);
+    const double swell =
+        combination.kind == Kind::Union ? n_fillets * combination.smooth / 4 : 0;
+    return bound + swell * direction.norm();
+}
+
+double support_of(const Copies& copies, const Vec3& direction) {
+    double bound = -std::numeric_limits<double>::infinity();
+    for (const auto& [Q, t] : copies.to_original) {
+        const Vec3 of_original = Q * direction;
+        bound =
+            std::max(bound, support(copies.of.front().shape, of_original) - of_original.dot(t));
+    }
+    return bound;
+}
+
 }  // namespace
 
-Mat3 rotation(const Transform& transform) {
-    const Vec3& angle = transform.rotate;
+Copies moved(const Shape& shape, const Vec3& rotate, const Vec3& translate) {
+    const Mat3 Q = rotation(rotate).transpose();
+    return {{{shape}}, {{Q, -(Q * translate)}}};
+}
+
+Copies mirrored(const Shape& shape, const Vec3& point, const Vec3& normal) {
+    const Vec3 n = normal.normalized();
+    const Mat3 Q = Mat3::Identity() - 2 * n * n.transpose();
+    return {{{shape}}, {{}, {Q, point - Q * point}}};
+}
+
+Copies ring_of(const Shape& shape, const Vec3& point, const Vec3& axis, int count) {
+    Copies copies{{{shape}}, {}};
+    for (int i = 0; i < count; ++i) {
+        const double back = -2 * EIGEN_PI * i / count;
+        const Mat3 Q = Eigen::AngleAxisd(back, axis.normalized()).toRotationMatrix();
+        copies.to_original.push_back({Q, point - Q * point});
+    }
+    return copies;
+}
+
+Mat3 rotation(const Vec3& angle) {
     return (Eigen::AngleAxisd(angle.z(), Vec3::UnitZ())
             * Eigen::AngleAxisd(angle.y(), Vec3::UnitY())
             * Eigen::AngleAxisd(angle.x(), Vec3::UnitX()))
         .toRotationMatrix();
+}
+
+Mat3 rotation(const Transform& transform) {
+    return rotation(transform.rotate);
 }
 
 Vec3 apply(const Transform& transform, const Vec3& x) {

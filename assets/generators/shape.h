@@ -1,10 +1,11 @@
-// Procedural shapes, and where a body's or skin's surface comes from.
+// Procedural shapes, what they combine to, and where a body's or skin's surface comes from.
 #pragma once
 
 #include "assets/base/vector_types.h"
 
 #include <filesystem>
 #include <variant>
+#include <vector>
 
 namespace assets {
 
@@ -32,7 +33,45 @@ struct Torus {
     double major = 0, minor = 0;          // ring radius, tube radius [m]
 };
 
-using Shape = std::variant<Box, Sphere, Cylinder, Capsule, Torus>;
+struct Ellipsoid {
+    Vec3 center{0, 0, 0}, radii{0, 0, 0};  // along x, y, z [m]
+};
+
+struct Operand;  // a shape that another one is made of
+
+/// Constructive solid geometry.
+struct Combination {
+    enum class Kind { Union, Intersection, Difference } kind = Kind::Union;
+    std::vector<Operand> of;  // at least one; Difference: the first without the others
+    double smooth = 0;        // size of the fillet where surfaces meet [m]
+};
+
+/// The union of congruent copies of a shape: a mirrored pair, a ring of petals, or one copy elsewhere.
+struct Copies {
+    struct Isometry {  // from a point to where the original has it: Q x + t
+        Mat3 Q = Mat3::Identity();
+        Vec3 t{0, 0, 0};
+    };
+
+    std::vector<Operand> of;  // exactly one
+    std::vector<Isometry> to_original;
+};
+
+using Shape =
+    std::variant<Box, Sphere, Cylinder, Capsule, Torus, Ellipsoid, Combination, Copies>;
+
+struct Operand {
+    Shape shape;
+};
+
+/// A shape at translate + R x, R = rotation(rotate).
+Copies moved(const Shape& shape, const Vec3& rotate, const Vec3& translate);
+
+/// A shape and its image in the plane through `point` across `normal`.
+Copies mirrored(const Shape& shape, const Vec3& point, const Vec3& normal);
+
+/// `count` copies of a shape at equal angles about an axis, itself the first.
+Copies ring_of(const Shape& shape, const Vec3& point, const Vec3& axis, int count);
 
 struct MeshFile {
     std::filesystem::path path;  // absolute, or relative to the working directory
@@ -54,13 +93,17 @@ struct Source {
 Vec3 apply(const Transform& transform, const Vec3& x);
 Vec3 apply_inverse(const Transform& transform, const Vec3& x);
 
-/// R of a transform.   (3×3)
+/// Rz Ry Rx of the angles about the fixed axes, and R of a transform.   (3×3)
+Mat3 rotation(const Vec3& angles);
 Mat3 rotation(const Transform& transform);
 
-/// Signed distance to the surface of a shape, negative inside; exact, or for the torus of the true ring.   [m]
+/// Signed distance to the surface of a shape, negative inside; exact, or for the torus of the true ring. Of combinations
+/// and copies a lower bound of its size, with the right sign and a slope of at most 1, that is exact where but one of
+/// the surfaces that meet is near.   [m]
 double signed_distance(const Shape& shape, const Vec3& x);
 
-/// Support function: max over the shape of direction·x. Bounds along any direction follow from it.   [m]
+/// Support function: max over the shape of direction·x, of combinations an upper bound. Bounds along any direction
+/// follow from it. With a direction of unit length, signed_distance(x) >= direction·x - support everywhere.   [m]
 double support(const Shape& shape, const Vec3& direction);
 
 }  // namespace assets

@@ -14,41 +14,13 @@ using Bounds = Eigen::AlignedBox3d;
 constexpr double world = 1000;               // half the edge of the world [m]
 constexpr double most_domains = 50'000'000;  // about 40 GB
 
-Bounds bounds_of(const Vec3& center, const Vec3& half) {
-    return {center - half, center + half};
-}
-
-Bounds local_bounds(const assets::Box& box) {
-    return {box.min, box.max};
-}
-
-Bounds local_bounds(const assets::Sphere& sphere) {
-    return bounds_of(sphere.center, Vec3::Constant(sphere.radius));
-}
-
-/// Half the extent along each axis of a disk of radius r across the direction n: r sqrt(1 - n_i²).
-Vec3 disk_half_extent(const Vec3& direction, double radius) {
-    const Vec3 n = direction.normalized();
-    return radius * (1 - n.array().square()).max(0).sqrt();
-}
-
-Bounds local_bounds(const assets::Cylinder& rod) {
-    const Vec3 half = disk_half_extent(rod.to - rod.from, rod.radius);
-    return bounds_of(rod.from, half).merged(bounds_of(rod.to, half));
-}
-
-Bounds local_bounds(const assets::Capsule& rod) {
-    const Vec3 half = Vec3::Constant(rod.radius);
-    return bounds_of(rod.from, half).merged(bounds_of(rod.to, half));
-}
-
-Bounds local_bounds(const assets::Torus& torus) {
-    return bounds_of(torus.center,
-                     disk_half_extent(torus.axis, torus.major) + Vec3::Constant(torus.minor));
-}
-
 Bounds local_bounds(const assets::Shape& shape) {
-    return std::visit([](const auto& kind) { return local_bounds(kind); }, shape);
+    Bounds bounds;
+    for (int axis = 0; axis < 3; ++axis) {
+        bounds.max()[axis] = assets::support(shape, Vec3::Unit(axis));
+        bounds.min()[axis] = -assets::support(shape, -Vec3::Unit(axis));
+    }
+    return bounds;
 }
 
 Bounds local_bounds(const assets::MeshFile& file) {

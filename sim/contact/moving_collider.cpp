@@ -71,18 +71,20 @@ Distance distance_to(const assets::Torus& torus, const Vec3& x) {
     return away_from(torus.center + torus.major * out, torus.minor, x);
 }
 
-/// Bounds of a shape along the axes.
-std::pair<Vec3, Vec3> bounds(const assets::Shape& shape) {
-    Vec3 low, high;
-    for (int k = 0; k < 3; ++k) {
-        high[k] = assets::support(shape, Vec3::Unit(k));
-        low[k] = -assets::support(shape, -Vec3::Unit(k));
-    }
-    return {low, high};
+Distance distance_to(const std::shared_ptr<const assets::DistanceField>& field, const Vec3& x) {
+    Distance distance;
+    distance.gap = field->at(x, distance.normal);
+    return distance;
 }
 
+/// Whether the distance and its gradient are those of a formula.
+template <class Kind>
+concept HasFormula = requires(const Kind& kind, const Vec3& x) {
+    distance_to(kind, x);
+};
+
 Eigen::Quaterniond rotation_of(const ColliderKey& key) {
-    return Eigen::Quaterniond(assets::rotation({1, key.rotate, Vec3::Zero()}));
+    return Eigen::Quaterniond(assets::rotation(key.rotate));
 }
 
 }  // namespace
@@ -104,18 +106,22 @@ MovingCollider::MovingCollider(const Collider& collider, double resolution)
         thickness_ = infinity;
         return;
     }
-    std::pair<Vec3, Vec3> box;
-    if (const auto* shape = std::get_if<assets::Shape>(&collider.shape)) {
-        shape_ = *shape;
-        box = bounds(*shape);
-    } else {
-        const double voxel = resolution / 4;
-        const auto solid = assets::make_solid(collider_source(collider), voxel, 16 * voxel);
-        box = {solid->min, solid->max};
+    const double voxel = resolution / 4;
+    const auto solid = assets::make_solid(collider_source(collider), voxel, 16 * voxel);
+    centre_ = (solid->min + solid->max) / 2;
+    thickness_ = (solid->max - solid->min).minCoeff();
+    bool has_formula = false;
+    if (const auto* shape = std::get_if<assets::Shape>(&collider.shape))
+        has_formula = std::visit(
+            [&](const auto& kind) {
+                constexpr bool is_formula = HasFormula<std::decay_t<decltype(kind)>>;
+                if constexpr (is_formula)
+                    shape_ = kind;
+                return is_formula;
+            },
+            *shape);
+    if (!has_formula)
         shape_ = std::make_shared<const assets::DistanceField>(*solid, voxel);
-    }
-    centre_ = (box.first + box.second) / 2;
-    thickness_ = (box.second - box.first).minCoeff();
 }
 
 Pose MovingCollider::pose(double time) const {
@@ -135,13 +141,7 @@ Pose MovingCollider::pose(double time) const {
 }
 
 Distance MovingCollider::distance(const Vec3& X) const {
-    if (const auto* plane = std::get_if<PlaneShape>(&shape_))
-        return distance_to(*plane, X);
-    if (const auto* shape = std::get_if<assets::Shape>(&shape_))
-        return std::visit([&](const auto& s) { return distance_to(s, X); }, *shape);
-    Distance distance;
-    distance.gap = std::get<2>(shape_)->at(X, distance.normal);
-    return distance;
+    return std::visit([&](const auto& shape) { return distance_to(shape, X); }, shape_);
 }
 
 }  // namespace sim

@@ -22,8 +22,8 @@ struct Pose {
 
 class MovingCollider {
   public:
-    /// `resolution`: the scale at which a mesh matters, the smallest domain's edge [m]. Throws Error(Input) where a
-    /// mesh is not closed.
+    /// `resolution`: the scale at which details matter of what has no formula (a mesh, ellipsoids and combined shapes):
+    /// the smallest domain's edge [m]. Throws Error(Input) where a mesh is not closed.
     MovingCollider(const Collider& collider, double resolution);
 
     /// Between keys translation is linear and rotation turns evenly about the shape's centre; before the first key and
@@ -44,7 +44,13 @@ class MovingCollider {
     const Friction& friction() const { return friction_; }
 
   private:
-    std::variant<PlaneShape, assets::Shape, std::shared_ptr<const assets::DistanceField>>
+    std::variant<PlaneShape,
+                 assets::Box,
+                 assets::Sphere,
+                 assets::Cylinder,
+                 assets::Capsule,
+                 assets::Torus,
+                 std::shared_ptr<const assets::DistanceField>>
         shape_;
     std::vector<ColliderKey> keys_;
     Friction friction_;

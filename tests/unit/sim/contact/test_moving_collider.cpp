@@ -63,6 +63,31 @@ TEST_CASE(
     CHECK((moving.pose(2).bring_back(moving.pose(2).carry(corner)) - corner).norm() < 1e-14);
 }
 
+TEST_CASE("ellipsoids and combined shapes are sampled, fine enough for their curvature") {
+    constexpr double resolution = 0.1, voxel = resolution / 4, least_radius = 0.36 / 1.2;
+    const assets::Shape egg = assets::Ellipsoid{{0, 0, 0}, {1.2, 0.6, 0.8}};
+    const assets::Shape two = assets::Combination{
+        assets::Combination::Kind::Union, {{egg}, {assets::Sphere{{3, 0, 0}, 0.5}}}, 0};
+    tests::Random random(2);
+    for (const assets::Shape& shape : {egg, two}) {
+        const MovingCollider collider({shape, {}}, resolution);
+        int checked = 0;
+        for (int repeat = 0; repeat < 4000; ++repeat) {
+            const Vec3 x = tests::random_vector(random, 1.3);
+            const double gap = assets::signed_distance(shape, x);
+            if (std::abs(gap) > voxel)
+                continue;
+            // A sphere's distance has two curvatures of 1/r, each worth voxel²/(8 r); of quadratic B-splines.
+            CHECK(std::abs(collider.distance(x).gap - gap)
+                  < voxel * voxel / (4 * (least_radius - 2 * voxel)));
+            CHECK(collider.distance(x).normal.norm() == Approx(1).margin(0.02));
+            ++checked;
+        }
+        CHECK(checked > 50);
+    }
+    CHECK(MovingCollider({two, {}}, resolution).thickness() == Approx(1.2));
+}
+
 TEST_CASE("the thickness is the smallest extent") {
     CHECK(MovingCollider({shapes[1], {}}, 0.1).thickness() == Approx(2));
     CHECK(std::isinf(MovingCollider({sim::PlaneShape{}, {}}, 0.1).thickness()));
