@@ -21,6 +21,7 @@ void read_words(const Table& words, Reading& reading, Shot& shot) {
     shot.fps = root.number("fps", Dimension::Rate, {.most = 1e6, .above = 0}, shot.fps);
 
     shot.scene.solver = read_solver(root.table("solver"));
+    read_shapes(root.table("shapes"));
     shot.scene.bodies = read_bodies(root, shot.scene.solver, shot.render.looks);
     shot.scene.pins = read_pins(root, shot.scene.bodies);
     shot.scene.forces = read_forces(root, shot.scene.bodies);

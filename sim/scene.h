@@ -60,8 +60,7 @@ struct Selector {
     };
 
     std::variant<All,
-                 assets::Box,
-                 assets::Sphere,
+                 assets::Shape,
                  HalfSpace,
                  MeshMaterial,
                  Inside,

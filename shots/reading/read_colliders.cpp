@@ -39,8 +39,9 @@ std::vector<sim::ColliderKey> read_keys(TableReader& collider) {
 
 sim::Collider read_collider(TableReader& table) {
     sim::Collider collider;
-    const std::string word =
-        table.one_of({"plane", "sphere", "box", "cylinder", "capsule", "mesh"});
+    std::vector<std::string> words = shape_words();
+    words.insert(words.end(), {"plane", "mesh"});
+    const std::string word = table.one_of(words);
     if (word == "plane") {
         collider.shape = read_plane(table.table("plane"));
     } else if (word == "mesh") {

@@ -1,6 +1,7 @@
 #include "shots/reading/readers.h"
 #include "shots/text/suggestion.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace shots {
@@ -30,10 +31,9 @@ std::vector<Selector> read_parts(TableReader& table, const std::string& name) {
 }
 
 decltype(Selector::is) read_word(TableReader& table, const std::string& word) {
-    if (word == "box")
-        return std::get<assets::Box>(read_shape(table, word));
-    if (word == "sphere")
-        return std::get<assets::Sphere>(read_shape(table, word));
+    const std::vector<std::string>& shapes = shape_words();
+    if (std::find(shapes.begin(), shapes.end(), word) != shapes.end())
+        return read_shape(table, word);
     if (word == "half_space")
         return read_half_space(table.table(word));
     if (word == "mesh_material")
@@ -51,27 +51,22 @@ decltype(Selector::is) read_word(TableReader& table, const std::string& word) {
     return Selector::All{};
 }
 
-/// "all", or a table of exactly one word.
+/// "all", the name of a shape, or a table of exactly one word.
 Selector read_value(TableReader& owner, const std::string& name, const Value& value) {
-    static const std::vector<std::string> words{"box",
-                                                "sphere",
-                                                "half_space",
-                                                "mesh_material",
-                                                "inside",
-                                                "depth",
-                                                "all_of",
-                                                "any_of",
-                                                "not"};
+    static const std::vector<std::string> words = [] {
+        std::vector<std::string> all = shape_words();
+        for (const char* word :
+             {"half_space", "mesh_material", "inside", "depth", "all_of", "any_of", "not"})
+            all.emplace_back(word);
+        return all;
+    }();
     Selector selector;
     selector.key = owner.key_of(name);
     if (const auto* text = std::get_if<std::string>(&value.is)) {
         owner.record(name, *text);
         if (*text != "all")
-            owner.reading().report.error(
-                value.at,
-                fmt::format("unknown part '{}'; allowed: \"all\", or a table with one of {}",
-                            *text,
-                            listed(words)));
+            if (auto shape = find_shape(owner, *text, value.at))
+                selector.is = std::move(*shape);
         return selector;
     }
     TableReader table = owner.inside(name, value);

@@ -37,11 +37,23 @@ std::optional<sim::Method> read_method(TableReader& table, const std::string& us
 /// kernel; empty where there is none.
 std::optional<sim::Kernel> read_kernel(TableReader& table);
 
-/// The words that name a shape: box, sphere, cylinder, capsule, torus.
+/// The words that make a shape: box, sphere, cylinder, capsule, torus, ellipsoid, union, intersection, difference,
+/// moved, mirror, ring.
 const std::vector<std::string>& shape_words();
 
-/// { center, radius } and the like, standing in `owner` under one of shape_words().
+/// The shape that the word of shape_words() makes in `owner`, with the words beside it that belong to it.
 assets::Shape read_shape(TableReader& owner, const std::string& word);
+
+/// A shape that stands as a value in `owner` under `name`: { WORD = ... }, or the name of one of [shapes].
+assets::Shape read_shape_value(TableReader& owner, const std::string& name, const Value& value);
+
+/// The shape of [shapes] that `given` names; empty and a report where there is none.
+std::optional<assets::Shape> find_shape(TableReader& owner,
+                                        const std::string& given,
+                                        const Location& at);
+
+/// [shapes]: named shapes, in the order of the file; each may use those before it.
+void read_shapes(TableReader table);
 
 /// shape = {...} or mesh = "file", and transform = {...}, in the table of a body.
 assets::Source read_body_source(TableReader& body);

@@ -4,6 +4,7 @@
 
 #include "assets/base/vector_types.h"
 #include "assets/frames/frame_cache.h"
+#include "assets/generators/shape.h"
 #include "shots/reading/report.h"
 #include "shots/reading/value.h"
 #include "shots/text/units.h"
@@ -24,6 +25,7 @@ struct Reading {
     Report report;
     assets::Fingerprint
         resolved;  // dotted key -> value of everything that decides the simulation
+    std::map<std::string, assets::Shape> shapes;  // of [shapes], by name, as far as it was read
 };
 
 /// Numbers allowed: least <= x <= most and above < x < below.
@@ -117,6 +119,9 @@ class TableReader {
 
     /// The same of a table that concerns the picture alone.
     TableReader picture_table(const std::string& name);
+
+    /// The words of this table, names that the file chose, in its order.
+    std::vector<std::string> names();
 
     /// The bare value of a word, or null; for words of several types.
     const Value* value(const std::string& name);

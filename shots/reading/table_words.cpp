@@ -201,9 +201,8 @@ std::vector<TableReader> TableReader::tables(const std::string& name) {
     return result;
 }
 
-std::vector<TableReader> TableReader::all_tables() {
-    std::vector<TableReader> result;
-    std::vector<std::string> names;
+std::vector<std::string> TableReader::names() {
+    std::vector<std::string> result;
     for (const Entry& entry : *table_) {
         if (!is_identifier(entry.name))
             reading_->report.error(
@@ -211,11 +210,17 @@ std::vector<TableReader> TableReader::all_tables() {
                 fmt::format("names are of letters, digits, '_' and '-'; found '{}'",
                             entry.name));
         value(entry.name);
-        names.push_back(entry.name);
-        result.push_back(inside(entry.name, entry.value));
+        result.push_back(entry.name);
     }
     if (decides_ == Decides::Simulation)
-        reading_->resolved[key_] = listed(names);
+        reading_->resolved[key_] = listed(result);
+    return result;
+}
+
+std::vector<TableReader> TableReader::all_tables() {
+    std::vector<TableReader> result;
+    for (const std::string& name : names())
+        result.push_back(inside(name, *find(*table_, name)));
     return result;
 }
 

@@ -68,9 +68,7 @@ Level LevelMaker::make(const Selector& select) {
             return [](const Vec3&) { return -infinity; };
         }
 
-        Level operator()(const assets::Box& box) const { return level_of(box); }
-
-        Level operator()(const assets::Sphere& sphere) const { return level_of(sphere); }
+        Level operator()(const assets::Shape& shape) const { return level_of(shape); }
 
         Level operator()(const Selector::HalfSpace& half_space) const {
             return level_of(half_space);

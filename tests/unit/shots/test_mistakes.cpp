@@ -124,7 +124,7 @@ TEST_CASE("wrong values are told with what is allowed") {
         {"size = [64, 36]", "samples = 0", "41:11: ", "whole number"},
         {"size = [64, 36]", "path = \"out/{name}\"", "41:8: ", "{shot}"},
         {"select = \"all\"", "select = { depth = 1 }", "17:10: ", "must be \"all\""},
-        {"select = \"all\"", "select = \"everything\"", "17:10: ", "unknown part 'everything'"},
+        {"select = \"all\"", "select = \"everything\"", "17:10: ", "no shape 'everything'"},
         {"name = \"soft\"", "name = \"hard\"", "23:8: ", "stands twice"},
         {"name = \"soft\"", "name = \"a.b\"", "23:8: ", "letters, digits"},
         {"shape = { box = { min = [0, 0, 0], max = [1, 0.1, 0.1] } }",
@@ -144,6 +144,56 @@ TEST_CASE("wrong values are told with what is allowed") {
          "42:8: ",
          "a plane stands still"},
     })));
+}
+
+TEST_CASE("mistakes in shapes are told where they stand") {
+    const auto with_shapes = [](const std::string& shapes) {
+        return mistakes_of(with(sound_shot(), "[output]", "[shapes]\n" + shapes + "[output]"));
+    };
+    const std::string ball = "ball = { sphere = { center = [0, 0, 0], radius = 1 } }\n";
+    CHECK(with_shapes(ball
+                      + "pair = { mirror = \"ball\", point = [2, 0, 0], normal = [1, 0, 0] }\n")
+              .empty());
+
+    struct ShapeCase {
+        const char* line;  // line 42
+        const char* place;
+        const char* message;
+    };
+
+    for (const ShapeCase& row : std::initializer_list<ShapeCase>{
+             {"two = { union = [\"ball\", \"bal\"] }",
+              "42:26: ",
+              "there is no shape 'bal'; did you mean 'ball'? ([shapes] has: ball)"},
+             {"two = { union = [\"two\"] }", "42:18: ", "there is no shape 'two'"},
+             {"two = { untion = [\"ball\"] }", "42:9: ", "did you mean 'union'?"},
+             {"two = { union = \"ball\" }", "42:17: ", "must be an array of shapes"},
+             {"two = { union = [] }", "42:17: ", "must be an array of shapes"},
+             {"two = { union = [3] }", "42:18: ", "must be a table; found 3"},
+             {"two = { union = [\"ball\"], smoth = 1 }", "42:27: ", "did you mean 'smooth'?"},
+             {"two = { union = [\"ball\"], smooth = -1 }", "42:36: ", "at least 0"},
+             {"two = { moved = \"ball\", rotate = [0, 0, \"1 m\"] }",
+              "42:41: ",
+              "not an angle"},
+             {"two = { ring = \"ball\", point = [0, 0, 0], axis = [0, 0, 1] }",
+              "42:7: ",
+              "missing 'count'"},
+             {"two = { ring = \"ball\", point = [0, 0, 0], axis = [0, 0, 0], count = 2 }",
+              "42:50: ",
+              "must have a length"},
+             {"two = { ellipsoid = { center = [0, 0, 0], radii = [1, 0, 1] } }",
+              "42:51: ",
+              "greater than 0"},
+             {"all = { box = { min = [0, 0, 0], max = [1, 1, 1] } }",
+              "42:7: ",
+              "'all' has a meaning of its own"},
+         }) {
+        INFO(row.line);
+        const auto lines = with_shapes(ball + row.line + "\n");
+        INFO(Catch::StringMaker<std::vector<std::string>>::convert(lines));
+        REQUIRE(lines.size() == 1);
+        CHECK_THAT(lines.front(), StartsWith(row.place) && Contains(row.message));
+    }
 }
 
 TEST_CASE("words of features to come are told apart from mistakes") {

@@ -37,7 +37,8 @@ TEST_CASE("the whole vocabulary is read") {
     REQUIRE(bar.regions.size() == 2);
     CHECK(bar.regions[1].young_modulus == 100e3);
     CHECK(bar.regions[1].poisson_ratio == 0.3);  // inherited
-    CHECK(std::get<assets::Box>(bar.regions[1].select.is).min.x() == 0.15);
+    CHECK(std::get<assets::Box>(std::get<assets::Shape>(bar.regions[1].select.is)).min.x()
+          == 0.15);
     REQUIRE(bar.skins.size() == 1);
     CHECK_FALSE(bar.skins.front().source);
     CHECK(shot.render.looks.at({"bar", "outside"}).color_by == render::ColorBy::Look);
@@ -103,6 +104,46 @@ TEST_CASE("the alternatives of the vocabulary are read") {
     CHECK_FALSE(shot.render.looks.at({"bar", "core"}).coated);
     CHECK_FALSE(shot.render.camera.frame_bodies);
     CHECK(shot.render.camera.lens == 35);
+}
+
+TEST_CASE("shapes have names, and combine") {
+    constexpr double pi = std::numbers::pi;
+    using assets::signed_distance;
+    std::string text = with(vocabulary(),
+                            "shape = { box = { min = [0, -0.075, -0.075], max = [0.45, 0.075, "
+                            "0.075] } }",
+                            "shape = \"blossom\"");
+    text = with(text, "source = \"self\"", "source = \"cup\"");
+    text = with(text,
+                "select = { box = { min = [0.15, -1, -1], max = [0.30, 1, 1] } }",
+                "select = { all_of = [\"crown\", { not = { moved = \"ears\" } }] }");
+    text = with(text,
+                "[contact]",
+                "[[collider]]\nintersection = [\"both\"]\n"
+                "[[collider]]\nmirror = \"tilted\"\npoint = [1, 0, 0]\nnormal = [2, 0, 0]\n"
+                "[contact]");
+    const sim::Scene scene = load_text(text).scene;
+    const sim::Body& body = scene.bodies.front();
+    const auto& blossom = std::get<assets::Shape>(body.source.geometry);
+    CHECK(std::get<assets::Combination>(blossom).smooth == 0.01);
+    CHECK(std::get<assets::Combination>(blossom).of.size() == 2);
+    // Where a petal of the ring ends, and a sixth of a turn on: the way of its 8 cm beyond 10 cm, tilted by 15 degrees.
+    const double reach = 0.18 * std::cos(pi / 12), height = 0.01 + 0.18 * std::sin(pi / 12);
+    for (const double angle : {0.0, pi / 3})
+        CHECK(std::abs(signed_distance(
+                  blossom, {reach * std::cos(angle), reach * std::sin(angle), height}))
+              < 1e-9);
+    CHECK(signed_distance(std::get<assets::Shape>(body.skins.front().source->geometry),
+                          {0.1, 0, 0})
+          > 0);  // the ears are cut out
+    const auto& all_of = std::get<sim::Selector::AllOf>(body.regions[1].select.is).of;
+    CHECK(signed_distance(std::get<assets::Shape>(all_of.at(0).is), {0.1, 0, 0.035}) < 0);
+    CHECK(std::holds_alternative<sim::Selector::Not>(all_of.at(1).is));
+    using Kind = assets::Combination::Kind;
+    const auto& both = std::get<assets::Shape>(scene.colliders.at(1).shape);
+    CHECK(std::get<assets::Combination>(both).kind == Kind::Intersection);
+    const auto& mirrored = std::get<assets::Shape>(scene.colliders.at(2).shape);
+    CHECK(signed_distance(mirrored, {2 - reach, 0, height}) == Approx(0).margin(1e-9));
 }
 
 TEST_CASE("bodies have methods and kernels of their own") {
