@@ -56,16 +56,25 @@ double distance_of(const Torus& torus, const Vec3& x) {
     return std::hypot(at.radius - torus.major, at.height) - torus.minor;
 }
 
+/// Signed distance, but where it is `enough` or more, anything from `enough` up to it: what a smaller distance hides need
+/// not be known.   [m]
+double distance_up_to(const Shape& shape, const Vec3& x, double enough);
+
 /// The nearest point of an ellipsoid of radii e_i to x is y_i = e_i² x_i / (t + e_i²), where t puts it on the surface:
 /// g(t) = Σ (e_i x_i / (t + e_i²))² - 1 = 0. In units of the smallest radius g falls and is convex for t > -1, so Newton's
 /// method climbs to the root from where one term of the sum is 1. Its unknown is t + 1, exact where t comes close to -1.
-double distance_of(const Ellipsoid& ellipsoid, const Vec3& x) {
+double distance_of(const Ellipsoid& ellipsoid, const Vec3& x, double enough) {
+    const Vec3 from_middle = (x - ellipsoid.center).cwiseAbs();
+    const double at_least = std::max(from_middle.norm() - ellipsoid.radii.maxCoeff(),
+                                     (from_middle - ellipsoid.radii).maxCoeff());
+    if (at_least >= enough)
+        return at_least;
     constexpr int most_steps = 50;
     constexpr double least = 1e-12;  // keeps the nearest point unique in planes of symmetry
     const double unit = ellipsoid.radii.minCoeff();
     const Vec3 radii = ellipsoid.radii / unit;
     const Vec3 beyond = (radii.array() - 1) * (radii.array() + 1);  // e_i² - 1
-    const Vec3 at = ((x - ellipsoid.center) / unit).cwiseAbs().cwiseMax(least);
+    const Vec3 at = (from_middle / unit).cwiseMax(least);
     const Vec3 weighted = radii.cwiseProduct(at);
     double t_plus_1 = (weighted - beyond).maxCoeff();
     for (int step = 0; step < most_steps; ++step) {
@@ -87,25 +96,46 @@ double smooth_min(double a, double b, double k) {
     return std::min(a, b) - (k > 0 ? h * h / (4 * k) : 0);
 }
 
-double distance_of(const Combination& combination, const Vec3& x) {
+double distance_of(const Combination& combination, const Vec3& x, double enough) {
     using Kind = Combination::Kind;
+    const double smooth = combination.smooth;
     const bool of_union = combination.kind == Kind::Union;
-    double distance = signed_distance(combination.of.front().shape, x);
+    if (of_union)  // fillets take a quarter of `smooth` each
+        enough += static_cast<double>(combination.of.size()) * smooth / 4;
+    double distance = distance_up_to(combination.of.front().shape, x, enough);
     for (std::size_t i = 1; i < combination.of.size(); ++i) {
-        double other = signed_distance(combination.of[i].shape, x);
-        if (combination.kind == Kind::Difference)
-            other = -other;
-        distance = of_union ? smooth_min(distance, other, combination.smooth)
-                            : -smooth_min(-distance, -other, combination.smooth);
+        const Shape& shape = combination.of[i].shape;
+        if (of_union)
+            distance = smooth_min(distance,
+                                  distance_up_to(shape, x, std::min(enough, distance + smooth)),
+                                  smooth);
+        else if (combination.kind == Kind::Intersection)
+            distance = -smooth_min(-distance, -distance_up_to(shape, x, enough), smooth);
+        else
+            distance =
+                -smooth_min(-distance, distance_up_to(shape, x, smooth - distance), smooth);
     }
     return distance;
 }
 
-double distance_of(const Copies& copies, const Vec3& x) {
+double distance_of(const Copies& copies, const Vec3& x, double enough) {
     double distance = std::numeric_limits<double>::infinity();
     for (const auto& [Q, t] : copies.to_original)
-        distance = std::min(distance, signed_distance(copies.of.front().shape, Q * x + t));
+        distance = std::min(
+            distance,
+            distance_up_to(copies.of.front().shape, Q * x + t, std::min(enough, distance)));
     return distance;
+}
+
+double distance_up_to(const Shape& shape, const Vec3& x, double enough) {
+    return std::visit(
+        [&](const auto& s) {
+            if constexpr (requires { distance_of(s, x, enough); })
+                return distance_of(s, x, enough);
+            else
+                return distance_of(s, x);
+        },
+        shape);
 }
 
 double support_of(const Box& box, const Vec3& direction) {
@@ -208,7 +238,7 @@ Vec3 apply_inverse(const Transform& transform, const Vec3& x) {
 }
 
 double signed_distance(const Shape& shape, const Vec3& x) {
-    return std::visit([&](const auto& s) { return distance_of(s, x); }, shape);
+    return distance_up_to(shape, x, std::numeric_limits<double>::infinity());
 }
 
 double support(const Shape& shape, const Vec3& direction) {

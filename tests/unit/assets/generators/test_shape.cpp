@@ -20,7 +20,8 @@ const std::vector<Shape> shapes = {Box{{-1, 0.5, 0}, {0.5, 2, 0.25}},
                                    Torus{{0, 0.1, 0}, {1, 1, 3}, 0.8, 0.25},
                                    Ellipsoid{{0.2, 0, -0.1}, {1.1, 0.3, 0.7}}};
 
-const Shape ball = Sphere{{0.3, -0.2, 0.1}, 0.7}, block = Box{{-1, -0.4, -0.5}, {0.6, 0.4, 0.9}},
+const Shape ball = Sphere{{0.3, -0.2, 0.1}, 0.7},
+            block = Box{{-1, -0.4, -0.5}, {0.6, 0.4, 0.9}},
             rod = Capsule{{-1, 0.5, 0}, {1, -0.3, 0.4}, 0.3};
 
 Combination combined(Combination::Kind kind, double smooth) {
@@ -228,4 +229,38 @@ TEST_CASE("the solid of a moved shape has moved distances and exact bounds") {
 TEST_CASE("a shape without volume is refused") {
     CHECK_THROWS_WITH(make_solid({Shape(Sphere{{0, 0, 0}, 0}), {}}, 0.1, 1),
                       Catch::Contains("no volume"));
+}
+
+TEST_CASE("what a combination skips of its parts does not change its distance") {
+    using Kind = Combination::Kind;
+    std::vector<Shape> parts;
+    for (int i = 0; i < 4; ++i)
+        parts.push_back(moved(Ellipsoid{{0.4 * i, 0, 0.1}, {0.9, 0.2 + 0.1 * i, 0.4}},
+                              {0.5 * i, 0, 1.0 * i},
+                              {0, 0.3 * i, 0}));
+    const Shape ring = ring_of(parts[1], {0, 0, 0}, {0, 0, 1}, 3);
+    std::mt19937 random(7);
+    for (const double smooth : {0.0, 0.5})
+        for (const Kind kind : {Kind::Union, Kind::Intersection, Kind::Difference}) {
+            Combination inner{kind, {{parts[0]}, {parts[1]}, {ring}}, smooth};
+            const Shape nested =
+                Combination{Kind::Union, {{inner}, {parts[2]}, {parts[3]}}, smooth};
+            const auto joined = [&](double a, double b) {  // of a union
+                const double overlap = std::max(smooth - std::abs(a - b), 0.0);
+                return std::min(a, b) - (smooth > 0 ? overlap * overlap / (4 * smooth) : 0);
+            };
+            for (int k = 0; k < 2000; ++k) {
+                const Vec3 x = random_point(random);
+                double expected = signed_distance(parts[0], x);
+                for (const Shape& part : {parts[1], ring}) {
+                    const double other = signed_distance(part, x);
+                    expected = kind == Kind::Union        ? joined(expected, other)
+                               : kind == Kind::Difference ? -joined(-expected, other)
+                                                          : -joined(-expected, -other);
+                }
+                for (const Shape& part : {parts[2], parts[3]})
+                    expected = joined(expected, signed_distance(part, x));
+                REQUIRE(signed_distance(nested, x) == expected);
+            }
+        }
 }
