@@ -182,9 +182,9 @@ struct Probe {
     std::variant<Vec3, std::string> at;  // a material point at rest [m], or a region's name
 };
 
-/// Which domains of an enriched body get corners of their own; any of these.
+/// Which domains of an enriched body get corners of their own; any of these. See Enrichment.
 struct EnrichmentCriteria {
-    bool interface = true, mixed_cell = false, strain = false;
+    bool interface = true, thin = true, mixed_cell = false, strain = false;
 };
 
 /// One point per domain with hourglass energy, or eight with F-bar: the accuracy reference, several times as dear.

@@ -16,12 +16,12 @@ void read_numerics(TableReader& table) {
 }
 
 sim::EnrichmentCriteria read_criteria(TableReader& table) {
-    const std::vector<std::string> words =
-        table.words("enrich", {"interface", "mixed_cell", "strain"}, {}, {"interface"});
+    const std::vector<std::string> words = table.words(
+        "enrich", {"interface", "thin", "mixed_cell", "strain"}, {}, {"interface", "thin"});
     const auto has = [&](const char* word) {
         return std::find(words.begin(), words.end(), word) != words.end();
     };
-    return {has("interface"), has("mixed_cell"), has("strain")};
+    return {has("interface"), has("thin"), has("mixed_cell"), has("strain")};
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "sim/enrichment/enrichment.h"
 
 #include "assets/base/error.h"
+#include "sim/enrichment/thin_domains.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -98,20 +99,24 @@ Enrichment::Enrichment(const Lattice& lattice,
     if (criteria_.interface)
         for (const int p : boundary_domains(lattice))
             is_boundary_[p] = 1;
+    if (criteria_.thin)
+        is_thin_ = thin_domains(lattice, cell_size / lattice.edge);
+    else
+        is_thin_.assign(lattice.n_domains(), 0);
 }
 
 void Enrichment::update(const Lattice& lattice, const Vec3p* corners, char* free) {
     const bool by_cells = criteria_.interface || criteria_.mixed_cell;
-    if (!by_cells && !criteria_.strain)
+    if (!by_cells && !criteria_.thin && !criteria_.strain)
         return;
     if (by_cells)
         mark_cells(lattice, corners);
     for (int p = 0; p < lattice.n_domains(); ++p) {
         const bool was = enriched_[p];
-        bool is = false;
+        bool is = is_thin_[p];
         if (by_cells) {
             const Cell& cell = cell_at(centres_[p]);
-            is = cell.boundary || (was && cell.near_boundary);
+            is |= cell.boundary || (was && cell.near_boundary);
             if (criteria_.mixed_cell)
                 is |= cell.region == several || (was && cell.near_region == several);
         }

@@ -14,6 +14,7 @@ std::vector<int> boundary_domains(const Lattice& lattice);
 /// Enriches the domains of one body by the criteria of EnrichmentCriteria, together. A domain is enriched
 ///
 ///   interface    where its centre lies in a background cell that holds the centre of a boundary domain [Z18 Algorithm 2]
+///   thin         where its part is spanned by fewer than two cells, at rest: the grid cannot bend it (ours)
 ///   mixed_cell   where its centre lies in a cell with centres of two regions: scattered materials, whose domains need
 ///                not be neighbours (the limit named in [Z18 §7])
 ///   strain       where its smallest principal stretch, or the smallest over the largest, falls under a bound (the idea
@@ -40,7 +41,7 @@ class Enrichment {
 
     EnrichmentCriteria criteria_;
     double cell_size_ = 0;
-    std::vector<char> is_boundary_, enriched_;  // (#D)
+    std::vector<char> is_boundary_, is_thin_, enriched_;  // (#D)
 
     // Of the cells in the box [low_, low_ + size_), x fastest: what they hold, and what they would hold of centres within
     // the margin around them.

@@ -1,5 +1,6 @@
 #include "assets/base/error.h"
 #include "sim/enrichment/enrichment.h"
+#include "sim/enrichment/thin_domains.h"
 #include "tests/support/box_body.h"
 #include "tests/support/random_fields.h"
 
@@ -25,8 +26,9 @@ sim::Lattice layered(const std::array<int, 3>& n,
 }
 
 constexpr sim::EnrichmentCriteria interface {
-    true, false, false
-}, mixed_cell{false, true, false}, strain{false, false, true};
+    true, false, false, false
+}, thin{false, true, false, false}, mixed_cell{false, false, true, false},
+    strain{false, false, false, true};
 
 sim::Field rest(const sim::Lattice& lattice) {
     sim::Field corners;
@@ -142,6 +144,42 @@ TEST_CASE("mixed_cell enriches where a cell holds two regions that are no neighb
     };
     CHECK(n_enriched(interface) == 0);
     CHECK(n_enriched(mixed_cell) == 5);  // 8 in the right cell without three neighbours
+}
+
+TEST_CASE("thin parts are those that no cube of two cells fits into") {
+    const int thickness = GENERATE(3, 4, 7, 8);
+    const double cell = GENERATE(1.0, 1.5, 2.0, 4.0);  // domain edges
+    CAPTURE(thickness, cell);
+    const sim::Lattice lattice = layered({12, thickness, 12}, 0.1, 0, {});
+    const bool expected = thickness < 2 * std::ceil(cell);  // cubes of whole domains
+    const std::vector<char> is_thin = sim::thin_domains(lattice, cell);
+    CHECK(is_thin == std::vector<char>(lattice.n_domains(), expected));
+
+    sim::Enrichment enrichment(lattice, thin, 0.1 * cell);
+    std::vector<char> free(lattice.n_corners(), 0);
+    enrichment.update(lattice, rest(lattice).data(), free.data());
+    CHECK(enrichment.enriched() == is_thin);
+    CHECK(free == std::vector<char>(lattice.n_corners(), expected));
+}
+
+TEST_CASE("a fin on a block is thin but where it grows out of it, a ball nowhere") {
+    const double cell = 4;
+    sim::Body body = tests::box_body({8, 8, 8}, 1);
+    const auto boxes = [](const assets::Box& block, const assets::Box& fin) {
+        return assets::Combination{assets::Combination::Kind::Union, {{block}, {fin}}, 0};
+    };
+    body.source.geometry = boxes({{0, 0, 0}, {8, 8, 8}}, {{4, 3, 0}, {20, 5, 8}});
+    const sim::Lattice finned = sim::make_lattice(body);
+    const std::vector<char> is_thin = sim::thin_domains(finned, cell);
+    for (int p = 0; p < finned.n_domains(); ++p) {
+        // The block has one corner 4 deep, in its middle; 6 is one and a half times as far.
+        const bool expected = finned.cell[p][0] - finned.cell.front()[0] > 4 + 6;
+        REQUIRE(bool(is_thin[p]) == expected);
+    }
+
+    body.source.geometry = assets::Sphere{{0, 0, 0}, 9.3};
+    const sim::Lattice ball = sim::make_lattice(body);
+    CHECK(sim::thin_domains(ball, cell) == std::vector<char>(ball.n_domains(), 0));
 }
 
 TEST_CASE("strain enriches squashed domains until they have recovered by a margin") {

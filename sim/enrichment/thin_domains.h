@@ -1,0 +1,17 @@
+// Where a body is too thin for its background grid.
+#pragma once
+
+#include "sim/lattice/lattice.h"
+
+#include <vector>
+
+namespace sim {
+
+/// Domains of parts that no cube of 2 `depth` domains an edge fits into (#D). A part that is spanned by fewer than two
+/// cells of the grid cannot bend on its nodes: a trilinear cell shears where it should curve. `depth`: a cell in domain edges.
+///
+/// Depths are counted in domains from the surface, across faces, edges and vertices. Near a cube that fits, up to half a
+/// cell beyond it, a body is not thin: there curved surfaces lie, that cubes do not reach.
+std::vector<char> thin_domains(const Lattice& lattice, double depth);
+
+}  // namespace sim
