@@ -71,16 +71,19 @@ bool invert_trilinear(const std::array<Vec3, 8>& corners, const Vec3& point, Vec
 class Search {
   public:
     Search(const ContactSurface& of_vertices,
+           std::span<const int> vertices,
            const ContactSurface& of_domains,
            const Field& x,
            const Field& x_n,
            double margin)
         : a_(of_vertices),
+          vertices_(vertices),
           b_(of_domains),
           x_(x),
           x_n_(x_n),
           margin_(margin),
           beyond_(margin / of_domains.lattice->edge),
+          points_(points()),
           candidates_(candidates()),
           grid_(centres(), search_radius_) {}
 
@@ -88,11 +91,11 @@ class Search {
         if (candidates_.empty())
             return {};
         // Vertices in chunks of a fixed size, their contacts in order.
-        const int n = static_cast<int>(a_.vertices.size());
+        const int n = static_cast<int>(vertices_.size());
         std::vector<std::vector<ContactPoint>> parts((n + vertex_chunk - 1) / vertex_chunk);
         for_chunks(n, vertex_chunk, [&](int begin, int end) {
-            for (int v = begin; v < end; ++v)
-                look_at(a_.vertices[v], parts[begin / vertex_chunk]);
+            for (int k = begin; k < end; ++k)
+                look_at(a_.vertices[vertices_[k]], points_[k], parts[begin / vertex_chunk]);
         });
         std::vector<ContactPoint> found;
         for (const std::vector<ContactPoint>& part : parts)
@@ -101,9 +104,21 @@ class Search {
     }
 
   private:
-    /// Domains of the shell that are near the other body.
+    std::vector<Vec3> points() const {
+        std::vector<Vec3> result;
+        result.reserve(vertices_.size());
+        for (const int v : vertices_)
+            result.push_back(a_.vertices[v].position(x_));
+        return result;
+    }
+
+    /// Domains of the shell that are near the vertices.
     std::vector<Candidate> candidates() {
-        const Bounds region = a_.bounds(x_);
+        if (points_.empty())
+            return {};
+        Bounds region;
+        for (const Vec3& point : points_)
+            region.add(point);
         std::vector<Candidate> result;
         for (const int p : b_.shell) {
             Candidate candidate;
@@ -134,8 +149,9 @@ class Search {
         return result;
     }
 
-    void look_at(const ContactVertex& vertex, std::vector<ContactPoint>& found) const {
-        const Vec3 point = vertex.position(x_);
+    void look_at(const ContactVertex& vertex,
+                 const Vec3& point,
+                 std::vector<ContactPoint>& found) const {
         if (!bounds_.contains(point, search_radius_))
             return;
         const Place place = locate(vertex, point);
@@ -247,12 +263,15 @@ class Search {
         return true;
     }
 
-    const ContactSurface &a_, &b_;
+    const ContactSurface& a_;
+    std::span<const int> vertices_;
+    const ContactSurface& b_;
     const Field &x_, &x_n_;
     double margin_ = 0;
     double beyond_ = 0;         // a domain that its map is continued, in domain edges
     double search_radius_ = 0;  // around the centre of any candidate that it may hold [m]
     Bounds bounds_;             // of the candidates' centres
+    std::vector<Vec3> points_;  // (#vertices) where they are [m]
     std::vector<Candidate> candidates_;
     PointGrid grid_;
 };
@@ -260,11 +279,12 @@ class Search {
 }  // namespace
 
 std::vector<ContactPoint> find_contacts(const ContactSurface& of_vertices,
+                                        std::span<const int> vertices,
                                         const ContactSurface& of_domains,
                                         const Field& x,
                                         const Field& x_n,
                                         double margin) {
-    return Search(of_vertices, of_domains, x, x_n, margin).run();
+    return Search(of_vertices, vertices, of_domains, x, x_n, margin).run();
 }
 
 }  // namespace sim

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace sim {
 
@@ -124,6 +125,12 @@ std::array<Vec3, 8> ContactSurface::domain_corners(int p, const Field& x) const 
     for (int a = 0; a < 8; ++a)
         corners[a] = unpadded(x[begin + lattice->corners[p][a]]);
     return corners;
+}
+
+std::vector<int> ContactSurface::all_vertices() const {
+    std::vector<int> indices(vertices.size());
+    std::iota(indices.begin(), indices.end(), 0);
+    return indices;
 }
 
 Bounds ContactSurface::bounds(const Field& x) const {

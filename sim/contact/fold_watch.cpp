@@ -3,76 +3,192 @@
 #include "sim/base/parallel.h"
 #include "sim/contact/contact_search.h"
 #include "sim/contact/point_grid.h"
+#include "sim/embedding/trilinear.h"
+#include "sim/materials/signed_svd.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sim {
 
 namespace {
 
-constexpr int domain_chunk = 256;
-constexpr double touching =
-    1.7;  // farther apart the centres of domains that touch are not, in domain edges
-constexpr double watched = 2.4;  // that distances of strangers are known up to, in domain edges
+constexpr int vertex_chunk = 256;
+constexpr double continued = 0.25;  // of domains beyond themselves, in domain edges
+constexpr double watched = 0.25;    // that distances are looked at up to, in domain edges
+constexpr double rounding = 1e-9;   // of distances, in domain edges
+constexpr int n_directions = 13;
+
+/// Axes, and diagonals of the faces and of the cube.
+const std::array<Vec3, n_directions> directions = [] {
+    std::array<Vec3, n_directions> made;
+    for (int n = 0; n < n_directions; ++n) {
+        const int code = n + 14;  // one half of the 26 neighbours of a cell
+        made[n] = Vec3(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1).normalized();
+    }
+    return made;
+}();
+
+/// A continued domain from outside: its extent in each direction, and a ball.
+struct Hull {
+    Vec3 centre{0, 0, 0}, rest_centre{0, 0, 0};
+    double radius = 0;
+    std::array<double, n_directions> low{}, high{};
+
+    Hull(const std::array<Vec3, 8>& corners, const Vec3& at_rest) : rest_centre(at_rest) {
+        for (const Vec3& x : corners)
+            centre += x / 8;
+        low.fill(std::numeric_limits<double>::infinity());
+        high.fill(-std::numeric_limits<double>::infinity());
+        constexpr double end = 1 + continued;
+        for (int a = 0; a < 8; ++a) {
+            const auto w = trilinear_weights(
+                {a & 1 ? end : -continued, a & 2 ? end : -continued, a & 4 ? end : -continued});
+            Vec3 x = Vec3::Zero();
+            for (int b = 0; b < 8; ++b)
+                x += w[b] * corners[b];
+            radius = std::max(radius, (x - centre).norm());
+            for (int k = 0; k < n_directions; ++k) {
+                const double along = directions[k].dot(x);
+                low[k] = std::min(low[k], along);
+                high[k] = std::max(high[k], along);
+            }
+        }
+    }
+
+    /// At most the distance of x; not above zero only where neither the ball nor any direction parts them.   [m]
+    double distance(const Vec3& x) const {
+        double most = (x - centre).norm() - radius;
+        for (int k = 0; k < n_directions; ++k) {
+            const double along = directions[k].dot(x);
+            most = std::max({most, along - high[k], low[k] - along});
+        }
+        return most;
+    }
+};
 
 }  // namespace
 
-bool FoldWatch::is_folded(const Field& x) {
-    // Strangers are as far apart as when last looked at, less what any two corners have moved towards each other.
-    const int n = surface_->lattice->n_corners();
-    if (!checked_.empty()) {
-        const Vec3 first = unpadded(x[surface_->begin]) - checked_[0];
-        double squared = 0;
+/// Seen from a frame that flies and turns with a body, it does not move when it does that alone.
+struct FoldWatch::OwnFrame {
+    Vec3p centre{};
+    std::array<Vec3p, 3> column{};  // of the rotation into the frame
+
+    /// The rotation is that of the polar decomposition of Σ x X^T around the centres.
+    OwnFrame(const ContactSurface& surface, const Field& x) {
+        const Lattice& lattice = *surface.lattice;
+        const int n = lattice.n_corners();
+        Vec3 rest_centre = Vec3::Zero();
+        for (const Vec3& X : lattice.corner_rest)
+            rest_centre += X / n;
         for (int c = 0; c < n; ++c)
-            squared = std::max(
-                squared,
-                (unpadded(x[surface_->begin + c]) - checked_[c] - first).squaredNorm());
-        if (2 * std::sqrt(squared) < reach_)
-            return false;
+            centre += x[surface.begin + c];
+        centre /= double(n);
+        std::array<Vec3p, 3> sum{};
+        for (int c = 0; c < n; ++c) {
+            const Vec3 X = lattice.corner_rest[c] - rest_centre;
+            const Vec3p from_centre = x[surface.begin + c] - centre;
+            for (int k = 0; k < 3; ++k)
+                sum[k] += X[k] * from_centre;
+        }
+        Mat3 covariance;
+        covariance << unpadded(sum[0]), unpadded(sum[1]), unpadded(sum[2]);
+        const auto [U, stretch, V] = signed_svd(covariance);
+        const Mat3 inverse = V * U.transpose();
+        for (int k = 0; k < 3; ++k)
+            column[k] = padded(inverse.col(k));
     }
-    const double edge = surface_->lattice->edge;
-    const double nearest = nearest_strangers(x, watched * edge);
-    reach_ = nearest - touching * edge;
-    checked_.clear();
-    if (reach_ > 0)
-        for (int c = 0; c < n; ++c)
-            checked_.push_back(unpadded(x[surface_->begin + c]));
-    return !(reach_ > 0);
+
+    Vec3p seen(const Vec3p& x) const {
+        const Vec3p from_centre = x - centre;
+        return from_centre[0] * column[0] + from_centre[1] * column[1]
+               + from_centre[2] * column[2];
+    }
+
+    Vec3 seen(const Vec3& x) const { return unpadded(seen(padded(x))); }
+
+    std::array<Vec3, 8> seen(std::array<Vec3, 8> corners) const {
+        for (Vec3& x : corners)
+            x = seen(x);
+        return corners;
+    }
+};
+
+FoldWatch::FoldWatch(const ContactSurface& surface) : surface_(&surface) {
+    double of_vertex = 1;
+    for (const ContactVertex& vertex : surface.vertices) {
+        double sum = 0;
+        for (const double w : vertex.weights)
+            sum += std::abs(w);
+        of_vertex = std::max(of_vertex, sum);
+    }
+    // A vertex moves with its corners, the ball's centre too, and a continued corner by up to the sum of its weights.
+    most_change_ = of_vertex + 2 + std::pow(1 + 2 * continued, 3);
 }
 
-double FoldWatch::nearest_strangers(const Field& x, double within) const {
-    const std::vector<int>& shell = surface_->shell;
-    std::vector<Vec3> centres;
-    for (const int p : shell) {
-        Vec3 centre = Vec3::Zero();
-        for (const Vec3& corner : surface_->domain_corners(p, x))
-            centre += corner / 8;
-        centres.push_back(centre);
+std::vector<int> FoldWatch::strangers(const Field& x) {
+    const double edge = surface_->lattice->edge;
+    const OwnFrame frame(*surface_, x);
+    const int n = surface_->lattice->n_corners();
+    double squared = looked_at_.empty() ? std::numeric_limits<double>::infinity() : 0;
+    for (std::size_t c = 0; c < looked_at_.size(); ++c) {
+        const Vec3p moved = frame.seen(x[surface_->begin + c]) - looked_at_[c];
+        squared = std::max(squared, dot(moved, moved));
     }
-    const PointGrid grid(centres, within);
-    const int n = static_cast<int>(shell.size());
-    std::vector<double> parts((n + domain_chunk - 1) / domain_chunk, within * within);
-    for_chunks(n, domain_chunk, [&](int begin, int end) {
-        double& least = parts[begin / domain_chunk];
-        for (int i = begin; i < end; ++i) {
-            const auto& cell = surface_->lattice->cell[shell[i]];
-            grid.near(centres[i], [&](int j) {
-                const double squared = (centres[i] - centres[j]).squaredNorm();
-                if (j <= i || squared >= least)
+    double change = most_change_ * std::sqrt(squared) + rounding * edge;
+    if (!(change < watched * edge)) {
+        near_ = look_around(frame, x);
+        looked_at_.resize(n);
+        for (int c = 0; c < n; ++c)
+            looked_at_[c] = frame.seen(x[surface_->begin + c]);
+        change = rounding * edge;
+    }
+    std::vector<int> found;
+    for (const Near& near : near_) {
+        if (near.distance > change || (!found.empty() && found.back() == near.vertex))
+            continue;
+        const Hull hull(frame.seen(surface_->domain_corners(near.domain, x)), Vec3::Zero());
+        if (hull.distance(frame.seen(surface_->vertices[near.vertex].position(x))) <= 0)
+            found.push_back(near.vertex);
+    }
+    return found;
+}
+
+std::vector<FoldWatch::Near> FoldWatch::look_around(const OwnFrame& frame,
+                                                    const Field& x) const {
+    const double edge = surface_->lattice->edge, stranger = neighbourhood * edge;
+    std::vector<Hull> hulls;
+    std::vector<Vec3> centres;
+    double largest = 0;
+    for (const int p : surface_->shell) {
+        hulls.emplace_back(frame.seen(surface_->domain_corners(p, x)),
+                           surface_->domain_centre(p));
+        centres.push_back(hulls.back().centre);
+        largest = std::max(largest, hulls.back().radius);
+    }
+    const PointGrid grid(centres, largest + watched * edge);
+    const int n = static_cast<int>(surface_->vertices.size());
+    std::vector<std::vector<Near>> parts((n + vertex_chunk - 1) / vertex_chunk);
+    for_chunks(n, vertex_chunk, [&](int begin, int end) {
+        for (int v = begin; v < end; ++v) {
+            const Vec3 at = frame.seen(surface_->vertices[v].position(x)),
+                       rest = surface_->vertices[v].rest;
+            grid.near(at, [&](int i) {
+                const Hull& hull = hulls[i];
+                const double reach = hull.radius + watched * edge;
+                if ((at - hull.centre).squaredNorm() >= reach * reach
+                    || (hull.rest_centre - rest).squaredNorm() < stranger * stranger)
                     return;
-                const auto& other = surface_->lattice->cell[shell[j]];
-                double at_rest = 0;
-                for (int k = 0; k < 3; ++k)
-                    at_rest += (cell[k] - other[k]) * (cell[k] - other[k]);
-                if (at_rest > neighbourhood * neighbourhood)
-                    least = squared;
+                const double distance = hull.distance(at);
+                if (distance < watched * edge)
+                    parts[begin / vertex_chunk].push_back({v, surface_->shell[i], distance});
             });
         }
     });
-    double least = within * within;
-    for (const double part : parts)
-        least = std::min(least, part);
-    return std::sqrt(least);
+    std::vector<Near> result;
+    for (const std::vector<Near>& part : parts)
+        result.insert(result.end(), part.begin(), part.end());
+    return result;
 }
 
 }  // namespace sim

@@ -1,4 +1,4 @@
-// Whether a body may touch itself.
+// Where a body may touch itself.
 #pragma once
 
 #include "sim/contact/contact_surface.h"
@@ -7,21 +7,32 @@
 
 namespace sim {
 
-/// Tells cheaply whether two domains near a body's surface are near each other that are no neighbours at rest. The answer
-/// depends on x alone; that of earlier calls only saves work.
+/// Tells cheaply which vertices of a body may be in a domain that is no neighbour at rest (contact_search.h), or a quarter
+/// of a domain beyond it. However flat a domain is pressed, it reaches no further: layers that lie close to each other
+/// because what is between them is thin do not count.
+///
+/// The answer depends on x alone; that of earlier calls only saves work.
 class FoldWatch {
   public:
-    explicit FoldWatch(const ContactSurface& surface) : surface_(&surface) {}
+    explicit FoldWatch(const ContactSurface& surface);
 
-    bool is_folded(const Field& x);
+    /// Ascending; none of a body that is not folded.
+    std::vector<int> strangers(const Field& x);
 
   private:
-    double nearest_strangers(const Field& x, double within) const;
+    /// A vertex that was near a stranger when all distances were looked at.
+    struct Near {
+        int vertex = 0, domain = 0;
+        double distance = 0;  // then, less than `watched` [m]
+    };
+
+    struct OwnFrame;
+    std::vector<Near> look_around(const OwnFrame& frame, const Field& x) const;
 
     const ContactSurface* surface_;
-    std::vector<Vec3>
-        checked_;  // (#corners) where corners were when all distances were looked at, or empty [m]
-    double reach_ = 0;  // that strangers had left before they would be near [m]
+    double most_change_ = 0;  // of a distance, when corners move by 1
+    Field looked_at_;         // (#corners) seen when all distances were looked at, or empty [m]
+    std::vector<Near> near_;  // by vertex
 };
 
 }  // namespace sim

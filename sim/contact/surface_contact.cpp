@@ -14,6 +14,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double stiffness = 40;  // k / (E A / s): depth s/40 under a pressure E
 constexpr double wave_factor =
     8;  // of speed over wave speed, where bodies meet faster than that
+constexpr int most_looks =
+    8;  // at a body on its way; one that moves by more domain edges in itself is not waited for
 constexpr double share_of_thickness = 0.4;  // that bodies may approach in a step
 constexpr double rest_recovery =
     0.1;  // of a gap that had to be shifted, in domain edges per second
@@ -59,22 +61,37 @@ double SurfaceContact::approach(const Pair& pair, const std::vector<Extent>& ext
     return (a.velocity - b.velocity).norm() + a.spread + b.spread;
 }
 
-double SurfaceContact::distance(const Pair& pair,
-                                const std::vector<Extent>& extents,
-                                const Field& x) {
-    if (pair.of_vertices == pair.of_domains)
-        return folds_[pair.of_domains].is_folded(x) ? 0 : infinity;
+double SurfaceContact::distance(const Pair& pair, const std::vector<Extent>& extents) {
     return extents[pair.of_vertices].bounds.distance(extents[pair.of_domains].bounds);
+}
+
+bool SurfaceContact::may_fold(
+    const Pair& pair, const Start& start, double way, double dt, Field& x) {
+    // On its way a vertex is seen in a domain that it goes through, if looked at once per domain edge.
+    const ContactSurface& body = bodies_[pair.of_domains];
+    const double looks = std::ceil(way / body.lattice->edge);
+    if (looks > most_looks)
+        return true;
+    const int n = std::max(1, static_cast<int>(looks));
+    for (int k = 0; k <= n; ++k) {
+        for (int c = body.begin; c < body.begin + body.lattice->n_corners(); ++c)
+            x[c] = start.x[c] + (dt * k / n) * start.v[c];
+        if (!folds_[pair.of_domains].strangers(x).empty())
+            return true;
+    }
+    return false;
 }
 
 double SurfaceContact::largest_step(const Start& start, double dt) {
     if (empty())
         return infinity;
     const std::vector<Extent> all = extents(start);
+    Field moved(start.x.size());
     double limit = infinity;
     for (const Pair& pair : pairs_) {
-        const double speed = approach(pair, all), apart = distance(pair, all, start.x);
-        if (apart > speed * dt)
+        const double speed = approach(pair, all), apart = distance(pair, all);
+        if (apart > speed * dt
+            || (pair.is_self() && !may_fold(pair, start, speed * dt, dt, moved)))
             continue;
         const ContactSurface &a = bodies_[pair.of_vertices], &b = bodies_[pair.of_domains];
         const double thickness = std::min({b.lattice->edge, a.thickness, b.thickness});
@@ -87,19 +104,17 @@ void SurfaceContact::begin_step(const Start& start, const Field& x_expected, dou
     x_n_ = start.x;
     held_ = start.held;
     dt_ = dt;
-    active_.clear();
     const std::vector<Extent> all = extents(start);
-    for (std::size_t k = 0; k < pairs_.size(); ++k) {
-        Pair& pair = pairs_[k];
+    for (Pair& pair : pairs_) {
         const double edge = bodies_[pair.of_domains].lattice->edge, speed = approach(pair, all);
         pair.margin = std::max(least_margin * edge, speed * dt);
-        const bool is_self = pair.of_vertices == pair.of_domains;
         pair.recovery =
-            std::max(rest_recovery * edge, is_self ? 0 : impact_recovery * speed) * dt;
+            std::max(rest_recovery * edge, pair.is_self() ? 0 : impact_recovery * speed) * dt;
         pair.top_speed = start.top_speed[bodies_[pair.of_vertices].scene_body]
                          + start.top_speed[bodies_[pair.of_domains].scene_body];
-        if (distance(pair, all, start.x) <= pair.margin)
-            active_.push_back(static_cast<int>(k));
+        pair.vertices.clear();
+        if (!pair.is_self() && distance(pair, all) <= pair.margin)
+            pair.vertices = bodies_[pair.of_vertices].all_vertices();
     }
     find(x_expected);
 }
@@ -107,11 +122,17 @@ void SurfaceContact::begin_step(const Start& start, const Field& x_expected, dou
 void SurfaceContact::find(const Field& x) {
     contacts_.clear();
     rows_.clear();
-    for (const int k : active_) {
-        const Pair& pair = pairs_[k];
-        for (const ContactPoint& point : find_contacts(
-                 bodies_[pair.of_vertices], bodies_[pair.of_domains], x, x_n_, pair.margin))
-            contacts_.push_back(prepared(point, k));
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+        Pair& pair = pairs_[k];
+        if (pair.is_self())
+            pair.vertices = folds_[pair.of_domains].strangers(x);
+        for (const ContactPoint& point : find_contacts(bodies_[pair.of_vertices],
+                                                       pair.vertices,
+                                                       bodies_[pair.of_domains],
+                                                       x,
+                                                       x_n_,
+                                                       pair.margin))
+            contacts_.push_back(prepared(point, static_cast<int>(k)));
     }
 }
 
@@ -246,13 +267,12 @@ SurfaceContact::Report SurfaceContact::report(const Field& x) const {
     for (const Pair& pair : pairs_) {
         const ContactSurface &a = bodies_[pair.of_vertices], &b = bodies_[pair.of_domains];
         const double margin = reach * b.lattice->edge;
-        const bool may_touch =
-            &a == &b
-                ? FoldWatch(a).is_folded(x)
-                : all[pair.of_vertices].bounds.distance(all[pair.of_domains].bounds) <= margin;
-        if (!may_touch)
-            continue;
-        for (const ContactPoint& contact : find_contacts(a, b, x, x, margin)) {
+        std::vector<int> vertices;
+        if (pair.is_self())
+            vertices = FoldWatch(a).strangers(x);
+        else if (distance(pair, all) <= margin)
+            vertices = a.all_vertices();
+        for (const ContactPoint& contact : find_contacts(a, vertices, b, x, x, margin)) {
             report.penetration = std::max(report.penetration, -contact.gap / contact.edge);
             report.gap = std::min(report.gap, std::max(0.0, contact.gap) / contact.edge);
         }

@@ -86,7 +86,10 @@ class SurfaceContact : public ContactEnergy {
     struct Pair {
         int of_vertices = 0, of_domains = 0;  // bodies
         Friction friction;
+        std::vector<int> vertices = {};                  // that may touch in this step
         double margin = 0, recovery = 0, top_speed = 0;  // of this step [m], [m], [m/s]
+
+        bool is_self() const { return of_vertices == of_domains; }
     };
 
     /// Where a body is and how it moves.
@@ -104,7 +107,12 @@ class SurfaceContact : public ContactEnergy {
 
     std::vector<Extent> extents(const Start& start) const;
     double approach(const Pair& pair, const std::vector<Extent>& extents) const;
-    double distance(const Pair& pair, const std::vector<Extent>& extents, const Field& x);
+    /// Of bounds.   [m]
+    static double distance(const Pair& pair, const std::vector<Extent>& extents);
+
+    /// Whether a body may touch itself within dt, when no two of its corners near each other by more than `way` [m]. x is
+    /// overwritten.
+    bool may_fold(const Pair& pair, const Start& start, double way, double dt, Field& x);
     void find(const Field& x);
     double mismatch(const std::vector<Contact>& before, const Field& x) const;
     Contact prepared(const ContactPoint& point, int pair) const;
@@ -113,7 +121,6 @@ class SurfaceContact : public ContactEnergy {
     std::vector<ContactSurface> bodies_;
     std::vector<FoldWatch> folds_;  // (#bodies)
     std::vector<Pair> pairs_;
-    std::vector<int> active_;        // pairs that may touch in this step
     std::vector<Contact> contacts_;  // by pair, then vertex
     std::vector<Row> rows_;
     std::vector<HeldContact> held_;  // at the start of the step

@@ -32,7 +32,8 @@ const Arrows allowed = {
     {"sim/points",
      {"assets/*", "sim/scene.h", "sim/base", "sim/grid", "sim/materials", "sim/lattice"}},
     {"sim/elasticity", {"assets/*", "sim/scene.h", "sim/base", "sim/materials", "sim/lattice"}},
-    {"sim/contact", {"assets/*", "sim/scene.h", "sim/base", "sim/lattice", "sim/embedding"}},
+    {"sim/contact",
+     {"assets/*", "sim/scene.h", "sim/base", "sim/materials", "sim/lattice", "sim/embedding"}},
     {"sim/enrichment", {"assets/*", "sim/scene.h", "sim/base", "sim/lattice"}},
     {"sim/embedding", {"assets/*", "sim/lattice"}},
 
