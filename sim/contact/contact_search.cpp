@@ -218,8 +218,8 @@ class Search {
             const Vec3 middle = (outside + inside) / 2;
             (plane_at(middle).gap < 0 ? inside : outside) = middle;
         }
-        plane.normal = plane_at(inside).normal;
-        plane.gap = plane.normal.dot(X - inside);
+        plane = plane_at(inside);
+        plane.gap += plane.normal.dot(X - inside);
         return plane;
     }
 

@@ -1,0 +1,262 @@
+#include "sim/contact/contact_search.h"
+#include "sim/contact/surface_contact.h"
+#include "tests/support/box_body.h"
+#include "tests/support/derivative_order.h"
+#include "tests/support/random_fields.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+using sim::Field;
+
+namespace {
+
+constexpr double edge = 0.05, dt = 1e-3, top = 3 * edge;
+constexpr double young_modulus = 1e6;  // of box_body
+
+/// A small block that is let down on a big one; both stay as they are at rest, or are bent a little.
+struct Blocks {
+    sim::Body small = tests::box_body({2, 2, 2}, edge, {1.1 * edge, 1.2 * edge, top}),
+              big = tests::box_body({4, 4, 3}, edge);
+    sim::Lattice of_small = sim::make_lattice(small), of_big = sim::make_lattice(big);
+    int n_small = of_small.n_corners();
+    sim::ContactSurface upper{small, of_small, 0, 0}, lower{big, of_big, n_small, 1};
+    sim::SurfaceContact contact;
+    std::vector<double> still{0, 0};
+
+    explicit Blocks(const sim::Friction& friction)
+        : contact({upper, lower}, sim::PairFriction(scene(friction))) {}
+
+    static sim::Scene scene(const sim::Friction& friction) {
+        sim::Scene scene;
+        for (const char* name : {"small", "big"}) {
+            scene.bodies.emplace_back();
+            scene.bodies.back().name = name;
+        }
+        scene.contact.friction = friction;
+        return scene;
+    }
+
+    /// The small one moved, corners of both out of place by up to `bent`.
+    Field at(const Vec3& moved, double bent = 0) const {
+        tests::Random random(11);
+        Field x;
+        for (const Vec3& X : of_small.corner_rest)
+            x.push_back(sim::padded(X + moved + tests::random_vector(random, bent)));
+        for (const Vec3& X : of_big.corner_rest)
+            x.push_back(sim::padded(X + tests::random_vector(random, bent)));
+        return x;
+    }
+
+    void step(const Field& x,
+              const Field& x_expected,
+              std::vector<sim::HeldContact> held = {}) {
+        Field v(x.size());
+        for (std::size_t c = 0; c < x.size(); ++c)
+            v[c] = (x_expected[c] - x[c]) / dt;
+        contact.begin_step({x, v, still, held}, x_expected, dt);
+    }
+
+    /// k of a vertex that touches.   [N/m]
+    double stiffness(const sim::HeldContact& held) const {
+        const sim::ContactSurface& surface = held.pair == 1 ? upper : lower;
+        return 40 * young_modulus * surface.vertices[held.vertex].area / edge;
+    }
+
+    double energy(const Field& x) const {
+        Field g(x.size());
+        return contact.add_gradient(x, g);
+    }
+
+    Field gradient(const Field& x) const {
+        Field g(x.size());
+        contact.add_gradient(x, g);
+        return g;
+    }
+
+    Field product(const Field& u) const {
+        Field result(u.size());
+        contact.add_product(u, result);
+        return result;
+    }
+};
+
+Vec3 total(const Field& field) {
+    sim::Vec3p sum{};
+    for (const sim::Vec3p& f : field)
+        sum += f;
+    return sim::unpadded(sum);
+}
+
+Vec3 moment(const Field& x, const Field& force) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t c = 0; c < x.size(); ++c)
+        sum += sim::unpadded(x[c]).cross(sim::unpadded(force[c]));
+    return sum;
+}
+
+double magnitude(const Field& field) {
+    return std::sqrt(tests::dot(field, field));
+}
+
+constexpr double bent = 0.02 * edge, deep = 0.08 * edge;
+
+/// Bent, pressed together since the step before and sliding over each other now.
+Field press_and_slide(Blocks& blocks, double slip) {
+    const Field apart = blocks.at({0, 0, 2 * bent}, bent),
+                pressed = blocks.at({0, 0, -deep}, bent),
+                x = blocks.at({slip, 0.4 * slip, -1.2 * deep}, bent);
+    blocks.step(apart, pressed);
+    blocks.step(pressed, x, blocks.contact.held(pressed));
+    return x;
+}
+
+}  // namespace
+
+TEST_CASE("the energy of contact is k/2 d² of every vertex inside, k = 40 E A / s") {
+    Blocks blocks({false, 0.3});
+    const Field apart = blocks.at({0, 0, edge / 10}), x = blocks.at({0, 0, -deep});
+    blocks.step(apart, x);
+    const auto energy_in = [&](const sim::ContactSurface& vertices,
+                               const sim::ContactSurface& domains) {
+        double sum = 0;
+        for (const sim::ContactPoint& contact :
+             sim::find_contacts(vertices, vertices.all_vertices(), domains, x, apart, 0.0))
+            sum += 40 * young_modulus * contact.vertex->area / edge * contact.gap * contact.gap
+                   / 2;
+        return sum;
+    };
+    double of_upper = 0;  // all of one depth in the middle of the big one's top
+    for (const sim::ContactVertex& vertex : blocks.upper.vertices)
+        if (const double depth = top - vertex.position(x).z(); depth > 0)
+            of_upper += 40 * young_modulus * vertex.area / edge * depth * depth / 2;
+    REQUIRE(of_upper > 1);
+    CHECK(energy_in(blocks.upper, blocks.lower)
+          == Approx(of_upper).epsilon(1e-3));  // distances are of float
+    CHECK(blocks.energy(x)
+          == Approx(energy_in(blocks.upper, blocks.lower)
+                    + energy_in(blocks.lower, blocks.upper)));
+    double held = 0;
+    for (const sim::HeldContact& vertex : blocks.contact.held(x))
+        held += vertex.energy;
+    CHECK(held == Approx(blocks.energy(x)));
+    CHECK(blocks.energy(blocks.at({0, 0, 0.01 * edge})) == 0);
+}
+
+TEST_CASE("forces of contact are the slope of its energy, and its Hessian their change") {
+    Blocks blocks({false, 0.4});
+    const Field x =
+        press_and_slide(blocks, 3e-6);  // slips grow to 3 mm/s: above the spring's end
+    blocks.contact.linearize(x);
+    REQUIRE(magnitude(blocks.gradient(x)) > 1);
+    tests::Random random(5);
+    const Field way = tests::random_field(x.size(), random);
+    // Friction bends within 1e-6 m; touch begins and ends further off than that.
+    const auto slope_error = [&](double h) {
+        const Field ahead = tests::sum(x, h, way), behind = tests::sum(x, -h, way);
+        return (blocks.energy(ahead) - blocks.energy(behind)) / (2 * h)
+               - tests::dot(blocks.gradient(x), way);
+    };
+    const auto curvature_error = [&](double h) {
+        const Field ahead = blocks.gradient(tests::sum(x, h, way)),
+                    behind = blocks.gradient(tests::sum(x, -h, way));
+        const Field change = tests::sum(ahead, -1, behind);
+        return magnitude(tests::sum(blocks.product(way), -1 / (2 * h), change));
+    };
+    CHECK(tests::observed_order(slope_error, 3e-7) > 1.8);
+    CHECK(tests::observed_order(curvature_error, 3e-7) > 1.8);
+}
+
+TEST_CASE("the Hessian of contact is symmetric, not negative, and has its own diagonal") {
+    Blocks blocks({false, 0.4});
+    const Field x = press_and_slide(blocks, 3e-6);
+    blocks.contact.linearize(x);
+    tests::Random random(8);
+    const Field u = tests::random_field(x.size(), random),
+                w = tests::random_field(x.size(), random);
+    const double uHw = tests::dot(u, blocks.product(w));
+    CHECK(tests::dot(w, blocks.product(u)) == Approx(uHw).epsilon(1e-10));
+    CHECK(tests::dot(u, blocks.product(u)) > 0);
+    Field diagonal(x.size());
+    blocks.contact.add_diagonal(diagonal);
+    for (std::size_t c = 0; c < x.size(); c += 7)
+        for (int k = 0; k < 3; ++k) {
+            Field unit(x.size());
+            unit[c][k] = 1;
+            CHECK(diagonal[c][k] == Approx(blocks.product(unit)[c][k]));
+        }
+}
+
+TEST_CASE("forces of contact balance, and turn nothing where they are linearised") {
+    Blocks blocks({false, 0.4});
+    const Field x = press_and_slide(blocks, 3e-6), force = blocks.gradient(x);
+    CHECK(total(force).norm() < 1e-12 * magnitude(force));
+    CHECK(moment(x, force).norm() < 1e-9 * top * magnitude(force));
+    // On the small block: up, and against its way by no more than mu as much.
+    const Vec3 on_small = -total({force.begin(), force.begin() + blocks.n_small});
+    CHECK(on_small.z() > 0);
+    CHECK(on_small.x() < 0);
+    CHECK(on_small.head<2>().norm() < 0.4 * on_small.z() + 0.05 * on_small.z());
+}
+
+TEST_CASE("a step starts with no more energy of contact than the one before has left") {
+    Blocks blocks({false, 0});
+    const Field apart = blocks.at({0, 0, deep}), pressed = blocks.at({0, 0, -deep});
+    blocks.step(apart, pressed);
+    const double left = blocks.energy(pressed), returned = dt * 0.1 * edge;
+    std::vector<sim::HeldContact> held = blocks.contact.held(pressed);
+    blocks.step(pressed, pressed, held);
+    // A gap that had to be shifted comes back by 0.1 edges a second. Near a rim a vertex may be less deep under the nearest
+    // face than under the one it came through.
+    CHECK(blocks.energy(pressed) > 0.95 * left);
+    CHECK(blocks.energy(pressed) <= left * std::pow(1 + returned / (0.5 * deep), 2));
+    // As deep, but with a quarter of the energy left.
+    for (sim::HeldContact& vertex : held)
+        vertex.energy /= 4;
+    blocks.step(pressed, pressed, held);
+    CHECK(blocks.energy(pressed) > 0.95 * left / 4);
+    CHECK(blocks.energy(pressed) <= left / 4 * std::pow(1 + returned / (0.25 * deep), 2));
+    // Nothing was seen before: a start inside is no store of energy.
+    blocks.step(pressed, pressed);
+    double allowed = 0;
+    for (const sim::HeldContact& vertex : blocks.contact.held(pressed))
+        allowed += blocks.stiffness(vertex) * returned * returned / 2;
+    CHECK(blocks.energy(pressed) == Approx(allowed));
+    CHECK(blocks.energy(pressed) < 1e-4 * left);
+}
+
+TEST_CASE("explicit contact takes what would end inside, keeps momentum and makes no energy") {
+    const double mu = GENERATE(0.0, 0.3);
+    Blocks blocks({false, mu});
+    const Field x = blocks.at({0, 0, 0.01 * edge}, 0);
+    const Vec3 velocity(3, 1, -0.05 * edge / dt);
+    Field v(x.size()), mass(x.size(), sim::padded(Vec3::Constant(0.1)));
+    for (int c = 0; c < blocks.n_small; ++c)
+        v[c] = sim::padded(velocity);
+    Field end(x.size());
+    for (std::size_t c = 0; c < x.size(); ++c)
+        end[c] = x[c] + dt * v[c];
+    blocks.contact.begin_step({x, v, blocks.still, {}}, end, dt);
+    const double before = blocks.energy(end);
+    REQUIRE(before > 0);
+    Field after = v;
+    blocks.contact.restrain(x, mass, dt, after);
+    for (std::size_t c = 0; c < x.size(); ++c)
+        end[c] = x[c] + dt * after[c];
+    CHECK((total(after) - total(v)).norm() < 1e-12 * magnitude(v));
+    CHECK(tests::dot(after, after) < tests::dot(v, v));
+    CHECK(blocks.energy(end) < 1e-2 * before);
+    // Friction takes at most mu of the impulse along the normal, against the slip.
+    const auto impulse = [&](int axis) {
+        double sum = 0;
+        for (int c = 0; c < blocks.n_small; ++c)
+            sum += 0.1 * (after[c][axis] - v[c][axis]);
+        return sum;
+    };
+    CHECK(impulse(2) > 0);
+    CHECK(-impulse(0)
+          == Approx(mu * impulse(2) * velocity.x() / velocity.head<2>().norm())
+                 .epsilon(1e-2)
+                 .margin(1e-12));
+}
