@@ -74,12 +74,25 @@ std::filesystem::path sphere_file(const Vec3& centre, double radius, int n) {
 }  // namespace
 
 TEST_CASE("a cube at 20 m/s does not pass through a thin wall, and gains no energy") {
-    const double dt = GENERATE(1e-3, 1.0 / 240);
-    sim::Body body = cube({0, 0, 0.2}, 0.3, 6, 1e5);
+    struct Throw {
+        sim::Steps steps;
+        double dt;
+        int n_domains;  // an edge
+    };
+
+    // Explicit steps are as long as waves allow in any case. What velocity Verlet keeps is not the energy itself: with fewer
+    // domains that swings by more than 0.1%.
+    const Throw thrown = GENERATE(Throw{sim::Steps::Implicit, 1e-3, 4},
+                                  Throw{sim::Steps::Implicit, 1.0 / 240, 4},
+                                  Throw{sim::Steps::Bdf2, 1e-3, 4},
+                                  Throw{sim::Steps::Bdf2, 1.0 / 240, 4},
+                                  Throw{sim::Steps::Explicit, 1e-3, 6});
+    CAPTURE(int(thrown.steps), thrown.dt);
+    sim::Body body = cube({0, 0, 0.2}, 0.3, thrown.n_domains, 1e5);
     body.velocity = {0, 0, -20};
-    sim::Scene scene = scene_of(std::move(body), dt);
-    scene.solver.steps = GENERATE(sim::Steps::Implicit, sim::Steps::Bdf2, sim::Steps::Explicit);
-    const double thickness = 0.005;  // a tenth of a domain
+    sim::Scene scene = scene_of(std::move(body), thrown.dt);
+    scene.solver.steps = thrown.steps;
+    const double thickness = 0.005;  // a tenth of a domain, or less
     scene.colliders.push_back(
         {assets::Shape{assets::Box{{-1, -1, -thickness}, {1, 1, 0}}}, {false, 0.3}});
     sim::Simulation simulation(scene, frame_time);
