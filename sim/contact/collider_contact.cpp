@@ -38,7 +38,7 @@ ColliderContact::ColliderContact(const std::vector<Collider>& colliders,
     for (const ContactCorner& corner : corners_)
         stiffness_.push_back(corner.stiffness);
     grips_.resize(colliders_.size() * corners_.size());
-    touched_.resize(grips_.size());
+    starts_.resize(grips_.size());
     for (const MovingCollider& collider : colliders_)
         poses_.push_back(collider.pose(0));
     start_poses_ = poses_;
@@ -54,14 +54,25 @@ double ColliderContact::depth_of(const ContactCorner& corner,
     return std::max(0.0, -(distance.gap + corner.outside));
 }
 
+double ColliderContact::depth_in_step(std::size_t k,
+                                      std::size_t j,
+                                      const Vec3& x,
+                                      Vec3& normal) const {
+    const double depth = depth_of(corners_[k], colliders_[j], poses_[j], x, normal);
+    const Start& start = starts_[k * colliders_.size() + j];
+    if (normal.dot(start.normal) >= 0)
+        return depth;
+    normal = start.normal;
+    return std::max(0.0, -(start.gap + normal.dot(x - start.position)));
+}
+
 template <class Visit>
 void ColliderContact::for_touching(const Field& x, const Visit& visit) const {
     for (std::size_t k = 0; k < corners_.size(); ++k) {
         const Vec3 position = unpadded(x[corners_[k].corner]);
         for (std::size_t j = 0; j < colliders_.size(); ++j) {
             Vec3 normal;
-            const double depth =
-                depth_of(corners_[k], colliders_[j], poses_[j], position, normal);
+            const double depth = depth_in_step(k, j, position, normal);
             const Grip& grip = grips_[k * colliders_.size() + j];
             if (depth > 0 || grip.holds())
                 visit(Touch{corners_[k].corner, stiffness_[k], normal, depth, grip});
@@ -86,16 +97,16 @@ void ColliderContact::begin_step(const Field& x_n,
         const Pose& start = start_poses_[j] = collider.pose(time);
         const Pose& end = poses_[j] = collider.pose(time + dt);
         for (std::size_t k = 0; k < corners_.size(); ++k) {
-            const Vec3 x = unpadded(x_n[corners_[k].corner]);
-            Vec3 normal;
-            const double depth = depth_of(corners_[k], collider, start, x, normal);
-            touched_[k * colliders_.size() + j] = depth > 0;
+            const Vec3 X = start.bring_back(unpadded(x_n[corners_[k].corner]));
+            const MovingCollider::Distance distance = collider.distance(X);
+            const Start& at = starts_[k * colliders_.size() + j] = {
+                end.R * distance.normal, end.carry(X), distance.gap + corners_[k].outside};
             grips_[k * colliders_.size() + j] = Grip::of(collider.friction(),
                                                          stiffness_[k],
-                                                         depth,
+                                                         std::max(0.0, -at.gap),
                                                          dt,
-                                                         end.R * (start.R.transpose() * normal),
-                                                         end.carry(start.bring_back(x)));
+                                                         at.normal,
+                                                         at.position);
         }
     }
 }
@@ -104,9 +115,8 @@ bool ColliderContact::has_changed_touch(const Field& x) const {
     for (std::size_t k = 0; k < corners_.size(); ++k)
         for (std::size_t j = 0; j < colliders_.size(); ++j) {
             Vec3 normal;
-            const double depth = depth_of(
-                corners_[k], colliders_[j], poses_[j], unpadded(x[corners_[k].corner]), normal);
-            if ((depth > 0) != (touched_[k * colliders_.size() + j] != 0))
+            const double depth = depth_in_step(k, j, unpadded(x[corners_[k].corner]), normal);
+            if ((depth > 0) != (starts_[k * colliders_.size() + j].gap < 0))
                 return true;
         }
     return false;
@@ -163,15 +173,13 @@ double ColliderContact::add_gradient(const Field& x, Field& gradient) const {
 }
 
 void ColliderContact::restrain(const Field& x, double dt, Field& v) const {
-    for (const ContactCorner& corner : corners_)
+    for (std::size_t k = 0; k < corners_.size(); ++k)
         for (std::size_t j = 0; j < colliders_.size(); ++j) {
+            const ContactCorner& corner = corners_[k];
             Vec3p& velocity = v[corner.corner];
             Vec3 normal;
-            const double depth = depth_of(corner,
-                                          colliders_[j],
-                                          poses_[j],
-                                          unpadded(x[corner.corner] + dt * velocity),
-                                          normal);
+            const double depth =
+                depth_in_step(k, j, unpadded(x[corner.corner] + dt * velocity), normal);
             if (!(depth > 0))
                 continue;
             const double stopped = depth / dt;

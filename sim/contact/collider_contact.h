@@ -27,6 +27,9 @@ struct ContactCorner {
 /// displacement in the step relative to the collider. k = contact_stiffness E s leaves a depth p s / (k / s) under a
 /// pressure p, i.e. less than a thousandth of a domain for bodies that carry their own weight; corners of a body whose
 /// top speed lately was v meet m v² / d_impact² where that is more: d_impact = s/100 stops one that comes so fast.
+///
+/// Beyond the middle of a thin collider the way out is that to the side where the corner was at the start of the step:
+/// whatever a solver tries in between, no minimum of the energy lies behind the collider.
 class ColliderContact : public ContactEnergy {
   public:
     ColliderContact(const std::vector<Collider>& colliders, std::vector<ContactCorner> corners);
@@ -72,6 +75,12 @@ class ColliderContact : public ContactEnergy {
         const Grip& grip;
     };
 
+    /// A corner and a collider at the start of the step, as the collider carries them to its end.
+    struct Start {
+        Vec3 normal{0, 0, 0}, position{0, 0, 0};  // the normal is 0 before the first step
+        double gap = 0;                           // of the body's surface [m]
+    };
+
     Vec3 gradient_of(const Touch& touch, const Field& x, double& energy) const;
     Mat3 hessian_of(const Touch& touch, const Field& x) const;
     double depth_of(const ContactCorner& corner,
@@ -79,15 +88,15 @@ class ColliderContact : public ContactEnergy {
                     const Pose& pose,
                     const Vec3& x,
                     Vec3& normal) const;
+    double depth_in_step(std::size_t k, std::size_t j, const Vec3& x, Vec3& normal) const;
     template <class Visit>
     void for_touching(const Field& x, const Visit& visit) const;
 
     std::vector<MovingCollider> colliders_;
     std::vector<ContactCorner> corners_;
     std::vector<double> stiffness_;  // (#corners) k of this step
-    std::vector<char> touched_;      // (#corners × #colliders) at the start of the step
-    std::vector<Grip>
-        grips_;  // (#corners × #colliders) as the colliders carry them to the end of the step
+    std::vector<Start> starts_;      // (#corners × #colliders)
+    std::vector<Grip> grips_;        // (#corners × #colliders)
     std::vector<Pose> start_poses_,
         poses_;  // (#colliders) at the start and the end of the step
 

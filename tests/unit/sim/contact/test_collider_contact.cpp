@@ -210,3 +210,18 @@ TEST_CASE("the Hessian is the gradient's derivative on a plane, and positive eve
             CHECK(u.dot(H * u) >= -1e-12 * H.norm());
         }
 }
+
+TEST_CASE("whatever is tried within a step, a thin wall pushes back to the side of the start") {
+    const double thickness = 0.02;
+    const Collider wall{assets::Box{{-1, -1, -thickness}, {1, 1, 0}}, sim::Friction{false, 0}};
+    ColliderContact contact = contact_of(wall);
+    for (const double side : {1.0, -1.0}) {
+        const double face = side > 0 ? 0 : -thickness;
+        contact.begin_step({sim::padded(Vec3(0.1, 0.2, face + side * 0.001))}, at_rest, 0, dt);
+        for (const double depth : {0.002, 0.9 * thickness, 3 * thickness}) {
+            const Response r = response(contact, {0.1, 0.2, face - side * depth});
+            CHECK(r.energy == Approx(stiffness * depth * depth / 2));
+            CHECK(r.force.z() == Approx(side * stiffness * depth));
+        }
+    }
+}
