@@ -71,7 +71,6 @@ bool Stepper::try_equilibrium(State& state,
 
     state.x = potential_.positions();
     state.v.assign(state.x.size(), Vec3p{});
-    state.inner_impulse.assign(state.x.size(), Vec3p{});
     state.time = time_end;
     reaction_.assign(state.x.size(), Vec3p{});
     for (const int c :

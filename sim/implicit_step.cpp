@@ -49,7 +49,7 @@ bool Stepper::try_bdf2(State& state, double dt) {
 
 bool Stepper::solve_step(const State& state, double dt, Scheme scheme) {
     begin_step(state, dt, scheme);
-    guess(state);
+    guess(state, dt);
 
     NewtonOptions options;
     options.tolerance = dynamic_tolerance;
@@ -112,11 +112,7 @@ void Stepper::end_implicit(State& state, double dt) {
         return (step.mass[i] * (q_[i] - step.q_tilde[i]) + potential_.inner_part()[i])
                / dt_hat_;
     });
-    // What inner forces gave, before contact on the grid changes what moves the corners.
-    Field& inner = q_;
-    for (int i = 0; i < map_.n_dofs(); ++i)
-        inner[i] = (q_[i] - step.q_tilde[i]) * step.is_free[i];
-    map_.apply(inner, state.inner_impulse);
+    keep_inner_force(state);
     exchange_contact(state, dt_hat_);
     drift(dt_hat_);
     commit(state, dt);
@@ -126,20 +122,40 @@ void Stepper::end_implicit(State& state, double dt) {
             points_[b]->advance(q_moved_, dt_hat_, state.points[b]);
 }
 
-void Stepper::guess(const State& state) {
-    // Inner forces change little from one step to the next: start from their last impulse. The paper's single solve is
-    // linearised at x_n, hence starts from rest.
-    if (scene_.solver.steps == Steps::SemiImplicit)
+void Stepper::keep_inner_force(State& state) {
+    std::swap(state.inner_force, state.inner_force_before);
+    for (std::size_t c = 0; c < state.x.size(); ++c)
+        state.inner_force[c] = -potential_.corner_gradient()[c];
+    // Points have no forces of their own: what the grid gives is shared by their masses.
+    const auto& step = potential_.step();
+    Field& change = q_;
+    for (int i = 0; i < map_.n_dofs(); ++i)
+        change[i] = (q_[i] - step.q_tilde[i]) * step.is_free[i];
+    const Field& gained = map_.applied(change, corner_);
+    for (std::size_t b = 0; b < points_.size(); ++b)
+        if (points_[b])
+            for (int c = ranges_[b].begin; c < ranges_[b].end; ++c)
+                state.inner_force[c] += assembly_.mass[c] * gained[c] / dt_hat_;
+    if (state.last_dt == 0)
+        state.inner_force_before = state.inner_force;
+}
+
+void Stepper::guess(const State& state, double dt) {
+    // Inner forces change smoothly: they go on as from the step before to the last. They are kept on corners, where they
+    // do not depend on how the map of this step differs from the last one's. The paper's single solve is linearised at
+    // x_n, hence starts from rest.
+    if (scene_.solver.steps == Steps::SemiImplicit || state.last_dt == 0)
         return;
     const auto& step = potential_.step();
-    const double ratio = state.last_dt > 0 ? step.dt / state.last_dt : 0;
+    const double ahead = std::min(1.0, dt / state.last_dt);
     for (std::size_t c = 0; c < state.x.size(); ++c)
-        corner_[c] = ratio * assembly_.mass[c] * state.inner_impulse[c];
-    Field& impulse = scratch_.trial;
-    impulse.resize(map_.n_dofs());
-    map_.apply_transposed(corner_, impulse);
+        corner_[c] = step.dt
+                     * (state.inner_force[c]
+                        + ahead * (state.inner_force[c] - state.inner_force_before[c]));
+    const Field& impulse = map_.applied_transposed(corner_, scratch_.trial);
+    const double damped = 1 + scene_.solver.damping * dt_hat_;
     for (int i = 0; i < map_.n_dofs(); ++i)
-        q_[i] += step.is_free[i] * (step.q_tilde[i] + inverse_mass_[i] * impulse[i]);
+        q_[i] += step.is_free[i] * (step.q_tilde[i] + inverse_mass_[i] / damped * impulse[i]);
 }
 
 bool Stepper::is_held(const AssembledBody& body) const {

@@ -34,7 +34,8 @@ struct Simulation::Impl {
                     scene.colliders[k], static_cast<int>(k), assembly.finest_edge());
         state.x = assembly.rest;
         state.v = assembly.initial_velocity;
-        state.inner_impulse.assign(state.x.size(), Vec3p{});
+        state.inner_force.assign(state.x.size(), Vec3p{});
+        state.inner_force_before = state.inner_force;
         for (const Body& body : scene.bodies)
             state.top_speed.push_back(body.velocity.norm());
         stepper.start(state);
@@ -46,7 +47,8 @@ struct Simulation::Impl {
 
     /// The arrays of the state, as a checkpoint holds them; those of BDF2 last.
     std::vector<Field*> fields() {
-        std::vector<Field*> result = {&state.x, &state.v, &state.inner_impulse};
+        std::vector<Field*> result = {
+            &state.x, &state.v, &state.inner_force, &state.inner_force_before};
         if (!state.x_before.empty()) {
             result.push_back(&state.x_before);
             result.push_back(&state.v_before);

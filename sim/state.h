@@ -15,8 +15,8 @@ namespace sim {
 struct State {
     double time = 0;  // [s]
     Field x, v;       // positions [m], velocities [m/s]
-    Field
-        inner_impulse;  // velocity that inner forces gave in the last step, a guess for the next [m/s]
+    Field inner_force,
+        inner_force_before;  // of insides and contacts on corners, where the last step and the one before ended [N]
     Field x_before,
         v_before;  // where the last step began; kept by BDF2 alone, empty before its first step
     std::vector<Gradient> affine;  // B of [JSS15]: Σ_i w_i v_i (x_i - x)ᵀ; of APIC alone [m²/s]

@@ -105,7 +105,8 @@ class Stepper {
     bool solve_step(const State& state, double dt, Scheme scheme);
     bool minimize_with_contact(const NewtonOptions& options, int most_passes);
     void end_implicit(State& state, double dt);
-    void guess(const State& state);
+    void keep_inner_force(State& state);
+    void guess(const State& state, double dt);
     bool start_from_rest();
     bool is_held(const AssembledBody& body) const;
     void balance_momentum();
