@@ -1,15 +1,18 @@
 // How time and memory grow with the number of domains: a clamped block of n³ domains under gravity, one thread.
-// Usage: scaling_benchmark [LARGEST]     number of domains, 100000 where it is not given; CSV on stdout
+// Usage: scaling_benchmark [LARGEST [CASE]...]     number of domains, 100000 where it is not given; CSV on stdout
 #include "sim/simulation.h"
 #include "tests/support/bar_scene.h"
 
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <fmt/format.h>
+#include <string>
 #include <sys/resource.h>
+#include <vector>
 
 namespace {
 
@@ -78,11 +81,13 @@ void run(int n, const Case& c) {
 int main(int argc, char** argv) {
     const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
     const double largest = argc > 1 ? std::atof(argv[1]) : 1e5;
+    const std::vector<std::string> asked(argv + std::min(argc, 2), argv + argc);
     fmt::print(
         "case,domains,setup_s,ms_per_step,million_domain_steps_per_s,cg_per_step,peak_GiB\n");
     for (const int n : {10, 22, 46, 100})
         if (std::pow(n, 3) <= 1.1 * largest)
             for (const Case& c : cases)
-                run(n, c);
+                if (asked.empty() || std::find(asked.begin(), asked.end(), c.name) != asked.end())
+                    run(n, c);
     return 0;
 }
