@@ -15,9 +15,13 @@ namespace {
 
 constexpr int vertex_chunk = 256;
 constexpr double continued = 0.25;  // of domains beyond themselves, in domain edges
-constexpr double watched = 0.25;    // that distances are looked at up to, in domain edges
+constexpr double watched = 0.75;    // that distances are looked at up to, in domain edges
 constexpr double rounding = 1e-9;   // of distances, in domain edges
 constexpr int n_directions = 13;
+
+double squared_norm(const Vec3p& x) {
+    return dot(x, x);
+}
 
 /// Axes, and diagonals of the faces and of the cube.
 const std::array<Vec3, n_directions> directions = [] {
@@ -74,23 +78,16 @@ struct FoldWatch::OwnFrame {
     Vec3p centre{};
     std::array<Vec3p, 3> column{};  // of the rotation into the frame
 
-    /// The rotation is that of the polar decomposition of Σ x X^T around the centres.
-    OwnFrame(const ContactSurface& surface, const Field& x) {
-        const Lattice& lattice = *surface.lattice;
-        const int n = lattice.n_corners();
-        Vec3 rest_centre = Vec3::Zero();
-        for (const Vec3& X : lattice.corner_rest)
-            rest_centre += X / n;
-        for (int c = 0; c < n; ++c)
-            centre += x[surface.begin + c];
-        centre /= double(n);
+    /// The rotation is that of the polar decomposition of Σ x (X - X_mean)^T, `from_rest_centre` being X - X_mean.
+    OwnFrame(const Field& x, int begin, const Field& from_rest_centre) {
         std::array<Vec3p, 3> sum{};
-        for (int c = 0; c < n; ++c) {
-            const Vec3 X = lattice.corner_rest[c] - rest_centre;
-            const Vec3p from_centre = x[surface.begin + c] - centre;
+        for (std::size_t c = 0; c < from_rest_centre.size(); ++c) {
+            const Vec3p at = x[begin + c];
+            centre += at;
             for (int k = 0; k < 3; ++k)
-                sum[k] += X[k] * from_centre;
+                sum[k] += from_rest_centre[c][k] * at;
         }
+        centre /= double(from_rest_centre.size());
         Mat3 covariance;
         covariance << unpadded(sum[0]), unpadded(sum[1]), unpadded(sum[2]);
         const auto [U, stretch, V] = signed_svd(covariance);
@@ -115,32 +112,78 @@ struct FoldWatch::OwnFrame {
 };
 
 FoldWatch::FoldWatch(const ContactSurface& surface) : surface_(&surface) {
-    double of_vertex = 1;
     for (const ContactVertex& vertex : surface.vertices) {
         double sum = 0;
         for (const double w : vertex.weights)
             sum += std::abs(w);
-        of_vertex = std::max(of_vertex, sum);
+        of_vertex_ = std::max(of_vertex_, sum);
     }
-    // A vertex moves with its corners, the ball's centre too, and a continued corner by up to the sum of its weights.
-    most_change_ = of_vertex + 2 + std::pow(1 + 2 * continued, 3);
+    Vec3 rest_centre = Vec3::Zero();
+    for (const Vec3& X : surface.lattice->corner_rest)
+        rest_centre += X / surface.lattice->n_corners();
+    for (const Vec3& X : surface.lattice->corner_rest)
+        from_rest_centre_.push_back(padded(X - rest_centre));
 }
 
-std::vector<int> FoldWatch::strangers(const Field& x) {
-    const double edge = surface_->lattice->edge;
-    const OwnFrame frame(*surface_, x);
-    const int n = surface_->lattice->n_corners();
-    double squared = looked_at_.empty() ? std::numeric_limits<double>::infinity() : 0;
-    for (std::size_t c = 0; c < looked_at_.size(); ++c) {
-        const Vec3p moved = frame.seen(x[surface_->begin + c]) - looked_at_[c];
-        squared = std::max(squared, dot(moved, moved));
+void FoldWatch::see(const Field& x, const OwnFrame& frame) {
+    seen_.resize(surface_->lattice->n_corners());
+    for (std::size_t c = 0; c < seen_.size(); ++c)
+        seen_[c] = frame.seen(x[surface_->begin + c]);
+}
+
+double FoldWatch::most_change(double enough) const {
+    if (looked_at_.empty())
+        return std::numeric_limits<double>::infinity();
+    double squared = 0;
+    for (std::size_t c = 0; c < seen_.size(); ++c)
+        squared = std::max(squared, squared_norm(seen_[c] - looked_at_[c]));
+    // A vertex moves with its corners, a domain with its centre and, seen from there, a continued corner by up to the sum
+    // of its weights times what its corners do.
+    const double moved = std::sqrt(squared), of_centres = (of_vertex_ + 1) * moved,
+                 of_continued = std::pow(1 + 2 * continued, 3);
+    if (of_centres + of_continued * 2 * moved < enough)
+        return of_centres + of_continued * 2 * moved;
+    return of_centres + of_continued * most_strained();
+}
+
+double FoldWatch::most_strained() const {
+    double squared = 0;
+    for (const int p : surface_->shell) {
+        std::array<Vec3p, 8> moved;
+        Vec3p sum{};
+        for (int a = 0; a < 8; ++a) {
+            const int c = surface_->lattice->corners[p][a];
+            moved[a] = seen_[c] - looked_at_[c];
+            sum += moved[a];
+        }
+        for (int a = 0; a < 8; ++a)
+            squared = std::max(squared, squared_norm(moved[a] - sum / 8.0));
     }
-    double change = most_change_ * std::sqrt(squared) + rounding * edge;
+    return std::sqrt(squared);
+}
+
+const std::vector<int>& FoldWatch::strangers(const Field& x) {
+    // Steps ask twice for where the last one has ended.
+    const auto first = x.begin() + surface_->begin,
+               last = first + surface_->lattice->n_corners();
+    const auto is_same = [](const Vec3p& a, const Vec3p& b) {
+        return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+    };
+    if (!std::equal(asked_.begin(), asked_.end(), first, last, is_same)) {
+        asked_.assign(first, last);
+        found_ = find_strangers(x);
+    }
+    return found_;
+}
+
+std::vector<int> FoldWatch::find_strangers(const Field& x) {
+    const double edge = surface_->lattice->edge;
+    const OwnFrame frame(x, surface_->begin, from_rest_centre_);
+    see(x, frame);
+    double change = most_change(watched * edge) + rounding * edge;
     if (!(change < watched * edge)) {
         near_ = look_around(frame, x);
-        looked_at_.resize(n);
-        for (int c = 0; c < n; ++c)
-            looked_at_[c] = frame.seen(x[surface_->begin + c]);
+        looked_at_ = seen_;
         change = rounding * edge;
     }
     std::vector<int> found;

@@ -17,7 +17,7 @@ class FoldWatch {
     explicit FoldWatch(const ContactSurface& surface);
 
     /// Ascending; none of a body that is not folded.
-    std::vector<int> strangers(const Field& x);
+    const std::vector<int>& strangers(const Field& x);
 
   private:
     /// A vertex that was near a stranger when all distances were looked at.
@@ -27,12 +27,21 @@ class FoldWatch {
     };
 
     struct OwnFrame;
+    std::vector<int> find_strangers(const Field& x);
+    void see(const Field& x, const OwnFrame& frame);
+    /// Of a distance since all were looked at, at most; found with less effort where it is below `enough`.   [m]
+    double most_change(double enough) const;
+    double most_strained() const;  // of corners, seen from the centres of their domains [m]
     std::vector<Near> look_around(const OwnFrame& frame, const Field& x) const;
 
     const ContactSurface* surface_;
-    double most_change_ = 0;  // of a distance, when corners move by 1
-    Field looked_at_;         // (#corners) seen when all distances were looked at, or empty [m]
+    double of_vertex_ = 1;  // the most that one moves, when its corners move by 1
+    Field seen_,
+        looked_at_;  // (#corners) now, and when all distances were looked at, or empty [m]
     std::vector<Near> near_;  // by vertex
+    Field from_rest_centre_;  // (#corners) [m]
+    Field asked_;             // (#corners) the last x [m]
+    std::vector<int> found_;  // the answer
 };
 
 }  // namespace sim
