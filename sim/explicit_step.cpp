@@ -116,7 +116,9 @@ bool Stepper::try_explicit(State& state, double dt) {
 void Stepper::restrain_by_contact(const State& state, double dt) {
     if (colliders_.empty() && surfaces_.empty())
         return;
-    Field change = moved_;
+    Field& change = end_gradient_;  // not known yet
+    change = moved_;
+    bool is_hit = false;
     for (int pass = 0; pass < contact_passes && !surfaces_.empty(); ++pass) {
         // Found where the corners would end: again, as they end elsewhere once they are restrained.
         for (std::size_t c = 0; c < moved_.size(); ++c)
@@ -126,10 +128,12 @@ void Stepper::restrain_by_contact(const State& state, double dt) {
                 {state.x, state.v, state.top_speed, state.contacts}, corner_, dt);
         else
             surfaces_.relinearize(corner_);
-        surfaces_.restrain(state.x, assembly_.mass, dt, change);
+        if (!surfaces_.restrain(state.x, assembly_.mass, dt, change))
+            break;
+        is_hit = true;
     }
-    colliders_.restrain(state.x, dt, change);
-    move_through_grid(change);
+    if (colliders_.restrain(state.x, dt, change) || is_hit)
+        move_through_grid(change);
 }
 
 void Stepper::set_explicit_reactions(const State& state, double dt) {

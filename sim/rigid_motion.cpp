@@ -1,7 +1,8 @@
 #include "sim/rigid_motion.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
+
+#include <array>
 
 namespace sim {
 
@@ -16,14 +17,18 @@ RigidMotion rigid_motion(const Field& m, const Field& x, const Field& v, int beg
     rigid.centre /= mass;
     rigid.velocity /= mass;
 
-    // Inertia I = Σ m (r² 1 - r rᵀ) and angular momentum L about the centre; I spin = L.
-    Mat3 second_moment = Mat3::Zero();
-    Vec3 L = Vec3::Zero();
+    // Inertia I = Σ m (r² 1 - r rᵀ) and angular momentum L = Σ m r × v about the centre; I spin = L.
+    std::array<Vec3p, 3> rr{}, rv{};  // columns of Σ m r rᵀ and Σ m r vᵀ
     for (int c = begin; c < end; ++c) {
-        const Vec3 r = unpadded(x[c] - rigid.centre);
-        second_moment += m[c][0] * r * r.transpose();
-        L += m[c][0] * r.cross(unpadded(v[c] - rigid.velocity));
+        const Vec3p r = x[c] - rigid.centre, u = v[c] - rigid.velocity, mr = m[c] * r;
+        for (int k = 0; k < 3; ++k) {
+            rr[k] += r[k] * mr;
+            rv[k] += u[k] * mr;
+        }
     }
+    const Vec3 L(rv[2][1] - rv[1][2], rv[0][2] - rv[2][0], rv[1][0] - rv[0][1]);
+    Mat3 second_moment;
+    second_moment << unpadded(rr[0]), unpadded(rr[1]), unpadded(rr[2]);
     const Mat3 inertia = second_moment.trace() * Mat3::Identity() - second_moment;
     rigid.spin = padded(inertia.ldlt().solve(L));
     return rigid;

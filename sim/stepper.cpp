@@ -127,11 +127,13 @@ void Stepper::transfer(const State& state, Scheme scheme) {
             std::find(free_.begin() + begin, free_.begin() + end, 0) != free_.begin() + end;
         rigid.push_back(any_slave ? rigid_motion(assembly_.mass, state.x, v_hat_, begin, end)
                                   : RigidMotion{});
-        const RigidMotion apart = is_affine ? RigidMotion{} : rigid.back();
         for (int c = begin; c < end; ++c)
             corner_[c] =
-                assembly_.mass[c] * (v_hat_[c] - apart.at(state.x[c]))
+                assembly_.mass[c] * v_hat_[c]
                 + Vec3p{0, 0, 0, assembly_.mass[c][0]};  // mass goes along in the fourth
+        if (any_slave && !is_affine)
+            for (int c = begin; c < end; ++c)
+                corner_[c] -= assembly_.mass[c] * rigid.back().at(state.x[c]);
     }
     const Field& momentum = map_.applied_transposed(corner_, q_n_);
     if (is_affine && !map_.is_identity())
@@ -161,7 +163,7 @@ void Stepper::transfer(const State& state, Scheme scheme) {
         const double inverse_mass = mass > 0 ? 1 / mass : 0;
         inverse_mass_[i] = inverse_mass;
         q_n_[i] = inverse_mass * momentum[i] * Vec3p{1, 1, 1, 0};
-        if (!is_affine || !(mass > 0))
+        if (!map_.is_identity() && (!is_affine || !(mass > 0)))
             q_n_[i] += rigid[map_.dof_body()[i]].at(map_.dof_position()[i]);
         step.q_tilde[i] = (q_n_[i] + dt_hat_ * inverse_mass * force[i]) / damped;
         step.mass[i] = damped * dof_mass_[i];

@@ -172,7 +172,8 @@ double ColliderContact::add_gradient(const Field& x, Field& gradient) const {
     return energy;
 }
 
-void ColliderContact::restrain(const Field& x, double dt, Field& v) const {
+bool ColliderContact::restrain(const Field& x, double dt, Field& v) const {
+    bool any = false;
     for (std::size_t k = 0; k < corners_.size(); ++k)
         for (std::size_t j = 0; j < colliders_.size(); ++j) {
             const ContactCorner& corner = corners_[k];
@@ -182,6 +183,7 @@ void ColliderContact::restrain(const Field& x, double dt, Field& v) const {
                 depth_in_step(k, j, unpadded(x[corner.corner] + dt * velocity), normal);
             if (!(depth > 0))
                 continue;
+            any = true;
             const double stopped = depth / dt;
             const Pose& start = start_poses_[j];
             const Vec3 at = unpadded(x[corner.corner]);
@@ -192,6 +194,7 @@ void ColliderContact::restrain(const Field& x, double dt, Field& v) const {
             const double share = std::min(1.0, most / std::max(slip.norm(), 1e-300));
             velocity += padded(stopped * normal - share * slip);
         }
+    return any;
 }
 
 void ColliderContact::linearize(const Field& x) {

@@ -60,8 +60,8 @@ class ColliderContact : public ContactEnergy {
 
     /// What colliders take from velocities v (#C) that would move corners from x in an explicit step of dt: the part that
     /// would end inside, and friction of up to mu times as much, each corner for itself. Inelastic, so that no energy
-    /// comes of it (Moreau's stepping).
-    void restrain(const Field& x, double dt, Field& v) const;
+    /// comes of it (Moreau's stepping). Returns whether there was anything to take.
+    bool restrain(const Field& x, double dt, Field& v) const;
 
     /// The deepest penetration at x and `time`, as a share of the domain's edge.
     double deepest_penetration(const Field& x, double time) const;

@@ -134,10 +134,13 @@ std::vector<int> ContactSurface::all_vertices() const {
 }
 
 Bounds ContactSurface::bounds(const Field& x) const {
-    Bounds bounds;
-    for (int c = 0; c < lattice->n_corners(); ++c)
-        bounds.add(unpadded(x[begin + c]));
-    return bounds;
+    Vec3p low = x[begin], high = low;
+    for (int c = 1; c < lattice->n_corners(); ++c) {
+        const Vec3p at = x[begin + c];
+        low = at < low ? at : low;
+        high = at > high ? at : high;
+    }
+    return {unpadded(low), unpadded(high)};
 }
 
 }  // namespace sim

@@ -202,27 +202,30 @@ std::vector<FoldWatch::Near> FoldWatch::look_around(const OwnFrame& frame,
     const double edge = surface_->lattice->edge, stranger = neighbourhood * edge;
     std::vector<Hull> hulls;
     std::vector<Vec3> centres;
+    Field balls;  // around hulls and what is watched of their surroundings: centre, radius²
     double largest = 0;
     for (const int p : surface_->shell) {
-        hulls.emplace_back(frame.seen(surface_->domain_corners(p, x)),
-                           surface_->domain_centre(p));
-        centres.push_back(hulls.back().centre);
-        largest = std::max(largest, hulls.back().radius);
+        const Hull& hull = hulls.emplace_back(frame.seen(surface_->domain_corners(p, x)),
+                                              surface_->domain_centre(p));
+        const double reach = hull.radius + watched * edge;
+        centres.push_back(hull.centre);
+        balls.push_back(padded(hull.centre) + Vec3p{0, 0, 0, reach * reach});
+        largest = std::max(largest, reach);
     }
-    const PointGrid grid(centres, largest + watched * edge);
+    const PointGrid grid(centres, largest);
     const int n = static_cast<int>(surface_->vertices.size());
     std::vector<std::vector<Near>> parts((n + vertex_chunk - 1) / vertex_chunk);
     for_chunks(n, vertex_chunk, [&](int begin, int end) {
         for (int v = begin; v < end; ++v) {
             const Vec3 at = frame.seen(surface_->vertices[v].position(x)),
                        rest = surface_->vertices[v].rest;
+            const Vec3p at_padded = padded(at);
             grid.near(at, [&](int i) {
-                const Hull& hull = hulls[i];
-                const double reach = hull.radius + watched * edge;
-                if ((at - hull.centre).squaredNorm() >= reach * reach
-                    || (hull.rest_centre - rest).squaredNorm() < stranger * stranger)
+                const Vec3p apart = at_padded - balls[i];
+                if (dot(apart, apart) >= balls[i][3]
+                    || (hulls[i].rest_centre - rest).squaredNorm() < stranger * stranger)
                     return;
-                const double distance = hull.distance(at);
+                const double distance = hulls[i].distance(at);
                 if (distance < watched * edge)
                     parts[begin / vertex_chunk].push_back({v, surface_->shell[i], distance});
             });

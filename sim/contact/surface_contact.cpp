@@ -37,27 +37,28 @@ SurfaceContact::SurfaceContact(std::vector<ContactSurface> bodies, const PairFri
     }
 }
 
-std::vector<SurfaceContact::Extent> SurfaceContact::extents(const Start& start) const {
+std::vector<SurfaceContact::Extent> SurfaceContact::extents(const Field& x,
+                                                            const Field& v) const {
     std::vector<Extent> result(bodies_.size());
     for_chunks(static_cast<int>(bodies_.size()), 1, [&](int b, int /*end*/) {
         const int begin = bodies_[b].begin, end = begin + bodies_[b].lattice->n_corners();
         Extent& extent = result[b];
-        extent.bounds = bodies_[b].bounds(start.x);
+        extent.bounds = bodies_[b].bounds(x);
         Vec3p sum{};
         for (int c = begin; c < end; ++c)
-            sum += start.v[c];
+            sum += v[c];
         const Vec3p mean = sum / double(end - begin);
         double squared = 0;
         for (int c = begin; c < end; ++c)
-            squared = std::max(squared, dot(start.v[c] - mean, start.v[c] - mean));
+            squared = std::max(squared, dot(v[c] - mean, v[c] - mean));
         extent.velocity = unpadded(mean);
         extent.spread = std::sqrt(squared);
     });
     return result;
 }
 
-double SurfaceContact::approach(const Pair& pair, const std::vector<Extent>& extents) const {
-    const Extent &a = extents[pair.of_vertices], &b = extents[pair.of_domains];
+double SurfaceContact::approach(const Pair& pair) const {
+    const Extent &a = extents_[pair.of_vertices], &b = extents_[pair.of_domains];
     return (a.velocity - b.velocity).norm() + a.spread + b.spread;
 }
 
@@ -85,11 +86,11 @@ bool SurfaceContact::may_fold(
 double SurfaceContact::largest_step(const Start& start, double dt) {
     if (empty())
         return infinity;
-    const std::vector<Extent> all = extents(start);
+    extents_ = extents(start.x, start.v);
     Field moved(start.x.size());
     double limit = infinity;
     for (const Pair& pair : pairs_) {
-        const double speed = approach(pair, all), apart = distance(pair, all);
+        const double speed = approach(pair), apart = distance(pair, extents_);
         if (apart > speed * dt
             || (pair.is_self() && !may_fold(pair, start, speed * dt, dt, moved)))
             continue;
@@ -104,16 +105,15 @@ void SurfaceContact::begin_step(const Start& start, const Field& x_expected, dou
     x_n_ = start.x;
     held_ = start.held;
     dt_ = dt;
-    const std::vector<Extent> all = extents(start);
     for (Pair& pair : pairs_) {
-        const double edge = bodies_[pair.of_domains].lattice->edge, speed = approach(pair, all);
+        const double edge = bodies_[pair.of_domains].lattice->edge, speed = approach(pair);
         pair.margin = std::max(least_margin * edge, speed * dt);
         pair.recovery =
             std::max(rest_recovery * edge, pair.is_self() ? 0 : impact_recovery * speed) * dt;
         pair.top_speed = start.top_speed[bodies_[pair.of_vertices].scene_body]
                          + start.top_speed[bodies_[pair.of_domains].scene_body];
         pair.vertices.clear();
-        if (!pair.is_self() && distance(pair, all) <= pair.margin)
+        if (!pair.is_self() && distance(pair, extents_) <= pair.margin)
             pair.vertices = bodies_[pair.of_vertices].all_vertices();
     }
     find(x_expected);
@@ -263,7 +263,7 @@ bool SurfaceContact::has_changed_touch(const Field& x) const {
 SurfaceContact::Report SurfaceContact::report(const Field& x) const {
     Report report;
     const Field at_rest(x.size());
-    const std::vector<Extent> all = extents({x, at_rest, {}, {}});
+    const std::vector<Extent> all = extents(x, at_rest);
     for (const Pair& pair : pairs_) {
         const ContactSurface &a = bodies_[pair.of_vertices], &b = bodies_[pair.of_domains];
         const double margin = reach * b.lattice->edge;

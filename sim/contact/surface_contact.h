@@ -41,10 +41,11 @@ class SurfaceContact : public ContactEnergy {
         const std::vector<HeldContact>& held;  // ascending
     };
 
-    /// The longest step that moves no vertex further into a body that it may touch than a part of its thickness.   [s]
+    /// The longest step that moves no vertex further into a body that it may touch than a part of its thickness. Looks at
+    /// the start, from which begin_step goes on.   [s]
     double largest_step(const Start& start, double dt);
 
-    /// Finds what may touch in the step to about x_expected (#C) of length dt [s].
+    /// Finds what may touch in the step to about x_expected (#C) of length dt [s], after largest_step of the same start.
     void begin_step(const Start& start, const Field& x_expected, double dt);
 
     /// Linearises anew at x. Returns by how much depths differ from those of the old linearisation, at most, as a share
@@ -65,7 +66,8 @@ class SurfaceContact : public ContactEnergy {
     /// What contact takes from velocities v (#C) of corners of masses m (#C) [kg] that would move them from x in an
     /// explicit step of dt: the part that would end inside, as impulses between vertex and domain, and friction of up to
     /// mu times as much. Inelastic, so that no energy comes of it. Repeated, vertex after vertex, `restrain_sweeps` times.
-    void restrain(const Field& x, const Field& m, double dt, Field& v) const;
+    /// Returns whether there was anything to take.
+    bool restrain(const Field& x, const Field& m, double dt, Field& v) const;
 
     /// Deepest penetration and smallest gap at x, as shares of the domain's edge; gaps are known up to `reach`.
     struct Report {
@@ -105,8 +107,8 @@ class SurfaceContact : public ContactEnergy {
         Mat3 hessian;  // on p - o
     };
 
-    std::vector<Extent> extents(const Start& start) const;
-    double approach(const Pair& pair, const std::vector<Extent>& extents) const;
+    std::vector<Extent> extents(const Field& x, const Field& v) const;
+    double approach(const Pair& pair) const;
     /// Of bounds.   [m]
     static double distance(const Pair& pair, const std::vector<Extent>& extents);
 
@@ -121,6 +123,7 @@ class SurfaceContact : public ContactEnergy {
     std::vector<ContactSurface> bodies_;
     std::vector<FoldWatch> folds_;  // (#bodies)
     std::vector<Pair> pairs_;
+    std::vector<Extent> extents_;    // (#bodies) at the start of the step
     std::vector<Contact> contacts_;  // by pair, then vertex
     std::vector<Row> rows_;
     std::vector<HeldContact> held_;  // at the start of the step

@@ -28,13 +28,15 @@ void add_impulse(const ContactPoint& contact, const Vec3& impulse, const Field& 
 
 }  // namespace
 
-void SurfaceContact::restrain(const Field& x, const Field& m, double dt, Field& v) const {
+bool SurfaceContact::restrain(const Field& x, const Field& m, double dt, Field& v) const {
+    bool any = false;
     for (int sweep = 0; sweep < restrain_sweeps; ++sweep)
         for (const Contact& contact : contacts_) {
             const Vec3 rate = contact.separation(v);
             const double depth = contact.depth(contact.separation(x) + dt * rate);
             if (!(depth > 0))
                 continue;
+            any = true;
             // The impulse that ends the step where they touch, and friction of what slides then.
             const Vec3& n = contact.normal;
             const double inverse_mass = inverse_mass_of(contact, m);
@@ -47,6 +49,7 @@ void SurfaceContact::restrain(const Field& x, const Field& m, double dt, Field& 
                 std::min(1 / inverse_mass, most / std::max(slip.norm(), 1e-300));
             add_impulse(contact, push * n - hold * slip, m, v);
         }
+    return any;
 }
 
 }  // namespace sim
