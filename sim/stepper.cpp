@@ -31,13 +31,11 @@ std::vector<IncrementalPotential::ElasticBody> elastic_bodies(Assembly& assembly
 
 std::vector<ContactSurface> contact_surfaces(const Scene& scene, const Assembly& assembly) {
     std::vector<ContactSurface> result;
-    if (scene.contact.mode == Contact::Mode::Surface)
-        for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-            const AssembledBody& body = assembly.bodies[b];
-            if (!body.points)
-                result.emplace_back(
-                    scene.bodies[b], body.lattice, body.begin, static_cast<int>(b));
-        }
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+        const AssembledBody& body = assembly.bodies[b];
+        if (!body.points)
+            result.emplace_back(scene.bodies[b], body.lattice, body.begin, static_cast<int>(b));
+    }
     return result;
 }
 
@@ -48,8 +46,12 @@ Stepper::Stepper(const Scene& scene, Assembly& assembly)
       assembly_(assembly),
       colliders_(scene.colliders, assembly.contact_corners()),
       friction_(scene),
-      surfaces_(contact_surfaces(scene, assembly), friction_),
+      surfaces_(scene.contact.mode == Contact::Mode::Surface ? contact_surfaces(scene, assembly)
+                                                             : std::vector<ContactSurface>{},
+                friction_),
       potential_(map_, elastic_bodies(assembly), {&colliders_, &surfaces_}, make_points()) {
+    if (scene.contact.mode == Contact::Mode::Grid)
+        measured_.emplace(contact_surfaces(scene, assembly), friction_);
     for (const AssembledBody& body : assembly.bodies)
         ranges_.push_back({body.begin, body.end, body.cell_size, body.kernel});
 }

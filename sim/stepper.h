@@ -50,7 +50,8 @@ class Stepper {
 
     const ColliderContact& colliders() const { return colliders_; }
 
-    const SurfaceContact& surfaces() const { return surfaces_; }
+    /// Of bodies against each other, to measure how far they are apart, also where contact is on the grid.
+    const SurfaceContact& surfaces() const { return measured_ ? *measured_ : surfaces_; }
 
     const Prescribed& prescribed() const { return prescribed_; }
 
@@ -132,6 +133,7 @@ class Stepper {
     ColliderContact colliders_;
     PairFriction friction_;
     SurfaceContact surfaces_;                           // empty where contact is on the grid
+    std::optional<SurfaceContact> measured_;            // there, to measure penetration only
     std::vector<std::unique_ptr<PointEnergy>> points_;  // (#bodies)
     IncrementalPotential potential_;
     NewtonScratch scratch_;
