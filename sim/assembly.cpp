@@ -101,6 +101,7 @@ void Assembly::add_corners(const Body& body, const Lattice& lattice) {
         const Vec3& X = lattice.corner_rest[c];
         rest.push_back(padded(X));
         mass.push_back(padded(Vec3::Constant(lattice.corner_mass[c])));
+        volume.push_back(lattice.corner_volume[c]);
         initial_velocity.push_back(padded(body.velocity + body.spin.cross(X - centre)));
         outside.push_back(lattice.corner_outside[c]);
     }
@@ -111,6 +112,7 @@ void Assembly::add_points(const Body& body, const MaterialPoints& points) {
     for (int p = 0; p < points.size(); ++p) {
         rest.push_back(padded(points.rest[p]));
         mass.push_back(padded(Vec3::Constant(points.mass[p])));
+        volume.push_back(points.volume[p]);
         initial_velocity.push_back(
             padded(body.velocity + body.spin.cross(points.rest[p] - centre)));
         outside.push_back(-points.spacing / 2);  // a point stands for a little cube

@@ -59,6 +59,7 @@ struct Assembly {
     std::vector<AssembledProbe> probes;
     Field rest;                   // (#C) [m]
     Field mass;                   // (#C) in x, y and z [kg]
+    std::vector<double> volume;   // (#C) at rest [m³]
     Field initial_velocity;       // (#C) [m/s]
     Field force;                  // (#C) gravity and dead loads [N]
     std::vector<double> outside;  // (#C) distance out of the body's surface at rest [m]

@@ -170,7 +170,8 @@ struct ContactPair {
     Friction friction;
 };
 
-/// Between bodies: by their surfaces inside the solve, with themselves too, or on the background grid after it.
+/// Between bodies: by their surfaces inside the solve, with themselves too, or on the background grid after it, which is
+/// cheaper and lets them up to a domain into each other (grid_contact.h).
 struct Contact {
     enum class Mode { Surface, Grid } mode = Mode::Surface;
     Friction friction;

@@ -24,6 +24,7 @@ struct GridPair {
 struct ContactFields {
     const Field& x;                      // positions at the start of the step [m]
     const Field& mass;                   // [kg]
+    const std::vector<double>& volume;   // at rest [m³]
     const std::vector<double>& outside;  // distance out of the body's surface at rest [m]
     const Field& is_free;                // 1 in free components, 0 in prescribed ones
 };
@@ -31,8 +32,19 @@ struct ContactFields {
 /// All corners of a pair, free ones too, deposit mass and momentum on a grid. At a node where two bodies are
 /// present, approach each other, and overlap along the normal by the end of the step (largest n·x of the one against
 /// smallest of the other), they exchange the impulse m1 m2 / (m1 + m2) times the approach, with Coulomb friction; each
-/// corner gets Σ_i w_i dv_i back, so that momentum is exact. Normals from the mass-weighted shape gradients of both.
-/// Repeated `contact_sweeps` times, pair after pair. Changes `velocity` (#C) [m/s].
+/// corner gets Σ_i w_i dv_i back, so that momentum is exact. Repeated `contact_sweeps` times, pair after pair. Changes
+/// `velocity` (#C) [m/s].
+///
+/// The normal is that of g1/V1 - g2/V2, with V = Σ_c V_c w_ic of a body and g its gradient, by quadratic splines; or of g1 or
+/// -g2 alone where along it the bodies overlap by much less. At the rim of one body the mean leans: a block that slides would
+/// plough through the face under it, and with friction 0 come to a halt. Volume instead of mass [Z18], so that density
+/// does not turn it.
+///
+/// What it reaches (test_grid_contact.cpp): where corners are free a block slides down another by mu = 0, 0.1 and sticks by
+/// 0.5 within 1% of Coulomb's law, 3% where they are slaved; nearer than 1.5 cells to an edge of the lower one it also
+/// drifts, and misses by 6%. It rests within 0.01 domain edges, slaved 0.05. Corners alone are seen: two cubes that meet
+/// with a face on a face get 0.03 edges into each other at a fifth of the speed of waves, 0.3 at that speed; a rim between
+/// two rows of the other's corners 0.3 to 0.5, and 1.1. Contact between surfaces keeps to 0.02.
 void exchange_on_grid(const std::vector<GridPair>& pairs,
                       const ContactFields& corners,
                       double dt,
