@@ -14,7 +14,8 @@ namespace sim {
 namespace {
 
 constexpr double most_cells = 1 << 28;
-constexpr double margin = 0.25;  // in cells
+constexpr double margin = 0.25;    // in cells
+constexpr double least_cells = 3;  // across a part that its nodes can bend
 constexpr int none = -1, several = -2;
 
 /// Bounds of stretch under which a domain is enriched, and above which it is no longer.
@@ -100,7 +101,7 @@ Enrichment::Enrichment(const Lattice& lattice,
         for (const int p : boundary_domains(lattice))
             is_boundary_[p] = 1;
     if (criteria_.thin)
-        is_thin_ = thin_domains(lattice, cell_size / lattice.edge);
+        is_thin_ = thin_domains(lattice, least_cells / 2 * cell_size / lattice.edge);
     else
         is_thin_.assign(lattice.n_domains(), 0);
 }

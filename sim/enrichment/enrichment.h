@@ -14,7 +14,7 @@ std::vector<int> boundary_domains(const Lattice& lattice);
 /// Enriches the domains of one body by the criteria of EnrichmentCriteria, together. A domain is enriched
 ///
 ///   interface    where its centre lies in a background cell that holds the centre of a boundary domain [Z18 Algorithm 2]
-///   thin         where its part is spanned by fewer than two cells, at rest: the grid cannot bend it (ours)
+///   thin         where its part is spanned by fewer than three cells, at rest: the grid cannot bend it (ours)
 ///   mixed_cell   where its centre lies in a cell with centres of two regions: scattered materials, whose domains need
 ///                not be neighbours (the limit named in [Z18 §7])
 ///   strain       where its smallest principal stretch, or the smallest over the largest, falls under a bound (the idea

@@ -7,7 +7,8 @@ namespace sim {
 
 namespace {
 
-constexpr double reach = 1.5;  // of a corner as deep as asked for, in depths
+constexpr double reach = 1.5;      // of a corner as deep as asked for, in depths
+constexpr double rounding = 1e-6;  // of the depth, where it is whole
 constexpr int unreached = std::numeric_limits<int>::max();
 
 /// Number of domains on the shortest way from the corners where `steps` is 0 to each other one.
@@ -71,7 +72,7 @@ std::vector<char> thin_domains(const Lattice& lattice, double depth) {
 
     std::vector<int> from_depth;
     for (const int steps : from_surface)
-        from_depth.push_back(steps >= depth ? 0 : unreached);
+        from_depth.push_back(steps >= depth - rounding ? 0 : unreached);
     flood.run(from_depth);
 
     std::vector<char> is_thin(lattice.n_domains());

@@ -146,16 +146,16 @@ TEST_CASE("mixed_cell enriches where a cell holds two regions that are no neighb
     CHECK(n_enriched(mixed_cell) == 5);  // 8 in the right cell without three neighbours
 }
 
-TEST_CASE("thin parts are those that no cube of two cells fits into") {
-    const int thickness = GENERATE(3, 4, 7, 8);
-    const double cell = GENERATE(1.0, 1.5, 2.0, 4.0);  // domain edges
-    CAPTURE(thickness, cell);
+TEST_CASE("thin parts are those that no cube of three cells fits into") {
+    const int thickness = GENERATE(3, 4, 6, 7, 8);
+    const double depth = GENERATE(1.0, 1.5, 2.0, 3.0, 4.0);  // domain edges
+    CAPTURE(thickness, depth);
     const sim::Lattice lattice = layered({12, thickness, 12}, 0.1, 0, {});
-    const bool expected = thickness < 2 * std::ceil(cell);  // cubes of whole domains
-    const std::vector<char> is_thin = sim::thin_domains(lattice, cell);
+    const bool expected = thickness < 2 * std::ceil(depth);  // cubes of whole domains
+    const std::vector<char> is_thin = sim::thin_domains(lattice, depth);
     CHECK(is_thin == std::vector<char>(lattice.n_domains(), expected));
 
-    sim::Enrichment enrichment(lattice, thin, 0.1 * cell);
+    sim::Enrichment enrichment(lattice, thin, 0.1 * depth / 1.5);
     std::vector<char> free(lattice.n_corners(), 0);
     enrichment.update(lattice, rest(lattice).data(), free.data());
     CHECK(enrichment.enriched() == is_thin);
@@ -163,14 +163,14 @@ TEST_CASE("thin parts are those that no cube of two cells fits into") {
 }
 
 TEST_CASE("a fin on a block is thin but where it grows out of it, a ball nowhere") {
-    const double cell = 4;
+    const double depth = 4;
     sim::Body body = tests::box_body({8, 8, 8}, 1);
     const auto boxes = [](const assets::Box& block, const assets::Box& fin) {
         return assets::Combination{assets::Combination::Kind::Union, {{block}, {fin}}, 0};
     };
     body.source.geometry = boxes({{0, 0, 0}, {8, 8, 8}}, {{4, 3, 0}, {20, 5, 8}});
     const sim::Lattice finned = sim::make_lattice(body);
-    const std::vector<char> is_thin = sim::thin_domains(finned, cell);
+    const std::vector<char> is_thin = sim::thin_domains(finned, depth);
     for (int p = 0; p < finned.n_domains(); ++p) {
         // The block has one corner 4 deep, in its middle; 6 is one and a half times as far.
         const bool expected = finned.cell[p][0] - finned.cell.front()[0] > 4 + 6;
@@ -179,7 +179,7 @@ TEST_CASE("a fin on a block is thin but where it grows out of it, a ball nowhere
 
     body.source.geometry = assets::Sphere{{0, 0, 0}, 9.3};
     const sim::Lattice ball = sim::make_lattice(body);
-    CHECK(sim::thin_domains(ball, cell) == std::vector<char>(ball.n_domains(), 0));
+    CHECK(sim::thin_domains(ball, depth) == std::vector<char>(ball.n_domains(), 0));
 }
 
 TEST_CASE("strain enriches squashed domains until they have recovered by a margin") {
