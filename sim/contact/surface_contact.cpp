@@ -66,14 +66,14 @@ double SurfaceContact::distance(const Pair& pair, const std::vector<Extent>& ext
     return extents[pair.of_vertices].bounds.distance(extents[pair.of_domains].bounds);
 }
 
-bool SurfaceContact::may_fold(
-    const Pair& pair, const Start& start, double way, double dt, Field& x) {
+bool SurfaceContact::may_fold(const Pair& pair, const Start& start, double way, double dt) {
     // On its way a vertex is seen in a domain that it goes through, if looked at once per domain edge.
     const ContactSurface& body = bodies_[pair.of_domains];
     const double looks = std::ceil(way / body.lattice->edge);
     if (looks > most_looks)
         return true;
     const int n = std::max(1, static_cast<int>(looks));
+    Field x(start.x.size());
     for (int k = 0; k <= n; ++k) {
         for (int c = body.begin; c < body.begin + body.lattice->n_corners(); ++c)
             x[c] = start.x[c] + (dt * k / n) * start.v[c];
@@ -87,16 +87,14 @@ double SurfaceContact::largest_step(const Start& start, double dt) {
     if (empty())
         return infinity;
     extents_ = extents(start.x, start.v);
-    Field moved(start.x.size());
     double limit = infinity;
     for (const Pair& pair : pairs_) {
         const double speed = approach(pair), apart = distance(pair, extents_);
-        if (apart > speed * dt
-            || (pair.is_self() && !may_fold(pair, start, speed * dt, dt, moved)))
-            continue;
         const ContactSurface &a = bodies_[pair.of_vertices], &b = bodies_[pair.of_domains];
-        const double thickness = std::min({b.lattice->edge, a.thickness, b.thickness});
-        limit = std::min(limit, std::max(apart, share_of_thickness * thickness) / speed);
+        const double thickness = std::min({b.lattice->edge, a.thickness, b.thickness}),
+                     way = std::max(apart, share_of_thickness * thickness);
+        if (way < speed * dt && (!pair.is_self() || may_fold(pair, start, speed * dt, dt)))
+            limit = std::min(limit, way / speed);
     }
     return limit;
 }

@@ -112,9 +112,8 @@ class SurfaceContact : public ContactEnergy {
     /// Of bounds.   [m]
     static double distance(const Pair& pair, const std::vector<Extent>& extents);
 
-    /// Whether a body may touch itself within dt, when no two of its corners near each other by more than `way` [m]. x is
-    /// overwritten.
-    bool may_fold(const Pair& pair, const Start& start, double way, double dt, Field& x);
+    /// Whether a body may touch itself within dt, when no two of its corners near each other by more than `way` [m].
+    bool may_fold(const Pair& pair, const Start& start, double way, double dt);
     void find(const Field& x);
     double mismatch(const std::vector<Contact>& before, const Field& x) const;
     Contact prepared(const ContactPoint& point, int pair) const;
