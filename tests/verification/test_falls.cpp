@@ -2,9 +2,12 @@
 #include "tests/support/soft_block.h"
 #include "tests/verification/experiment.h"
 
+#include <Eigen/SVD>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -79,4 +82,101 @@ TEST_CASE("four_cubes [Z18 fig 15]: they arrive by height, stay apart, and come 
         CHECK(y.back() < storeys.at(cube) * side);
         CHECK(y.back() > storeys.at(cube) * side * 0.95);
     }
+}
+
+namespace {
+
+/// snow_bunny with domains and points of twice the size, by as long steps as explicit ones may be.
+shots::Shot coarse_bunny() {
+    return load(
+        "snow_bunny",
+        "enriched",
+        {"solver.dt=1 ms", "body.bunny.domain_size=80 mm", "body.snow.domain_size=80 mm"});
+}
+
+/// How far x is from a turned and shifted X: root of the mean square after the best fit (Kabsch).   [m]
+double distortion(const std::vector<Vec3f>& X, const std::vector<Vec3f>& x) {
+    Vec3 centre_X = Vec3::Zero(), centre_x = Vec3::Zero();
+    const double n = static_cast<double>(X.size());
+    for (std::size_t v = 0; v < X.size(); ++v) {
+        centre_X += X[v].cast<double>() / n;
+        centre_x += x[v].cast<double>() / n;
+    }
+    Mat3 moment = Mat3::Zero();
+    for (std::size_t v = 0; v < X.size(); ++v)
+        moment +=
+            (x[v].cast<double>() - centre_x) * (X[v].cast<double>() - centre_X).transpose();
+    const Eigen::JacobiSVD<Mat3> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Mat3 mirror = Mat3::Identity();
+    mirror(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+    const Mat3 R = svd.matrixU() * mirror * svd.matrixV().transpose();
+    double sum = 0;
+    for (std::size_t v = 0; v < X.size(); ++v)
+        sum += (x[v].cast<double>() - centre_x - R * (X[v].cast<double>() - centre_X))
+                   .squaredNorm();
+    return std::sqrt(sum / n);
+}
+
+/// Height of the highest snow under the hind feet, where the bunny comes down; not finite if any snow is not.   [m]
+double height_under_feet(const sim::Simulation& simulation) {
+    const sim::PointCloud snow = simulation.point_clouds()[0];
+    double height = 0;
+    for (const Vec3& x : snow.positions) {
+        if (!x.allFinite())
+            return std::numeric_limits<double>::quiet_NaN();
+        if (std::abs(x.x() + 0.1) < 0.15 && std::abs(std::abs(x.z()) - 0.24) < 0.05)
+            height = std::max(height, x.y());
+    }
+    return height;
+}
+
+}  // namespace
+
+TEST_CASE("snow_bunny [Z18 fig 14]: as many domains and points as its file says") {
+    const shots::Shot filmed = load("snow_bunny", "enriched");
+    const sim::Simulation simulation(filmed.scene, 1 / filmed.fps);
+    CHECK(simulation.lattice(0).n_domains() == 5433);
+    CHECK(simulation.point_clouds()[0].positions.size() == 22284);
+}
+
+TEST_CASE("snow_bunny [Z18 fig 14]: snow keeps the crater, the bunny recovers its shape") {
+    const shots::Shot shot = coarse_bunny();
+    sim::Simulation simulation(shot.scene, 1 / shot.fps);
+    const std::vector<Vec3f> at_rest = simulation.deformed_surfaces()[0].positions;
+    const double top = height_under_feet(simulation);
+    double before = energy(simulation.stats()), worst = 0, last = 0;
+    for (int frame = 2; frame <= 18; ++frame) {
+        simulation.advance_to(shot.time_of(frame));
+        const double now = energy(simulation.stats());
+        CHECK(now < before);
+        before = now;
+        last = distortion(at_rest, simulation.deformed_surfaces()[0].positions);
+        REQUIRE(std::isfinite(last));
+        REQUIRE(std::isfinite(height_under_feet(simulation)));
+        worst = std::max(worst, last);
+    }
+    // The elastic part of what snow gives way by is its compression limit of its height at most; the rest stays.
+    const double crater = top - height_under_feet(simulation);
+    CAPTURE(crater, worst, last);
+    CHECK(crater > 2 * 0.025 * 0.48);
+    CHECK(last < worst / 2);  // what its weight and its swinging ears make is left
+}
+
+TEST_CASE("snow_bunny [Z18 fig 14]: momentum changes by the weight alone") {
+    shots::Shot shot = coarse_bunny();
+    shot.scene.colliders.clear();
+    shot.scene.solver.damping = 0;
+    shot.scene.bodies[0].velocity = {
+        0.5, -6, 0};  // 0.3 m above the snow: it is there after 0.05 s
+    sim::Simulation simulation(shot.scene, 1 / shot.fps);
+    const sim::Stats start = simulation.stats();
+    const double reached = 0.12;
+    simulation.advance_to(reached);
+    const sim::Stats end = simulation.stats();
+    const Vec3 impulse = start.total_mass * reached * Vec3(0, -9.81, 0);
+    // Rounding of 1e-16 in each of some 250 steps of 4000 points and corners.
+    CHECK((end.linear_momentum - start.linear_momentum - impulse).norm()
+          < 1e-11 * start.linear_momentum.norm());
+    // They have met: the snow is lower than by its fall alone.
+    CHECK(probe(simulation, "snow").position.y() < 0.24 - 9.81 * reached * reached / 2);
 }
