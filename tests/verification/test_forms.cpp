@@ -1,5 +1,4 @@
-// Experiments of [Z18] on bodies of several parts: how each part bends, on
-// grids of any fineness, and what a press leaves.
+// Experiments of [Z18] on bodies of several parts: how each part bends, on any grid, and what a press leaves.
 #include "sim/embedding/embedding.h"
 #include "sim/embedding/trilinear.h"
 #include "sim/lattice/lattice.h"
@@ -37,8 +36,7 @@ struct Halves {
     }
 };
 
-/// How much more a part curves than at rest, in the plane of its curve or, of a
-/// straight part, in any.   [rad/m]
+/// How much more a part curves than at rest, in the plane of its curve or, of a straight part, in any.   [rad/m]
 double bend(const Halves& at_rest, const Halves& now) {
     const double straight = 0.1 * at_rest.lower.norm() * at_rest.upper.norm();
     const Vec3 axis = at_rest.normal().norm() > straight ? at_rest.normal() : now.normal();
@@ -46,8 +44,7 @@ double bend(const Halves& at_rest, const Halves& now) {
            / ((at_rest.lower.norm() + at_rest.upper.norm()) / 2);
 }
 
-/// The dead load of a scene on its body, seen by probes on all corners that it
-/// pulls.
+/// The dead load of a scene on its body, seen by probes on all corners that it pulls.
 class Load {
   public:
     explicit Load(const sim::Scene& scene)
@@ -66,8 +63,7 @@ class Load {
         scene.probes.insert(scene.probes.end(), pulled_.begin(), pulled_.end());
     }
 
-    /// What it has done so far: the load times the mean displacement, by volume.
-    /// [J]
+    /// What it has done so far: the load times the mean displacement, by volume.   [J]
     double work(const sim::Simulation& simulation) const {
         const std::vector<sim::ProbeRow> probes = simulation.probes();
         double volume = 0;
@@ -133,15 +129,14 @@ double difference(const Course& a, const Course& b) {
     return apart / moved;
 }
 
-/// Backward Euler loses energy: what the load does not put in must come from
-/// rounding or the tolerance of Newton's method.
+/// Backward Euler loses energy: what the load does not put in must come from rounding or the tolerance of Newton's
+/// method.
 void check_sound(const Course& course) {
     CHECK(course.most_gained < 1e-3 * course.most_work);
     CHECK(course.smallest_J > 0.3);
 }
 
-/// Where a point is in a domain with these corners now: Newton's method on the
-/// trilinear map from the middle.
+/// Where a point is in a domain with these corners now: Newton's method on the trilinear map from the middle.
 Vec3 local_coordinates_of(const Vec3& x, const std::array<Vec3, 8>& corners) {
     Vec3 xi = Vec3::Constant(0.5);
     for (int step = 0; step < 20; ++step) {
@@ -186,12 +181,9 @@ TEST_CASE("flower [Z18 fig 11]: as many domains as in the paper") {
     CHECK(count_boundary_domains(lattice) == Approx(118).epsilon(0.03));
 }
 
-TEST_CASE(
-    "flower [Z18 fig 11]: leaves bend most, the stem least, on grids of "
-    "any fineness") {
-    // The resolution of the grid halved twice. Of larger domains even the finest
-    // grid would hold nothing as thick as the stem, so they are the shot's own;
-    // steps are long and few, to be cheap: leaves and petals have swung once, the
+TEST_CASE("flower [Z18 fig 11]: leaves bend most, the stem least, on any grid") {
+    // The resolution of the grid halved twice. Of larger domains even the finest grid would hold nothing as thick as
+    // the stem, so they are the shot's own; steps are long and few, to be cheap: leaves and petals have swung once, the
     // tip is on its way down.
     const int last_frame = 6;
     const auto shot = [](const std::string& grid_ratio) {
