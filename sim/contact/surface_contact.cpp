@@ -103,6 +103,7 @@ void SurfaceContact::begin_step(const Start& start, const Field& x_expected, dou
     x_n_ = start.x;
     held_ = start.held;
     dt_ = dt;
+    extents_ = extents(start.x, start.v);
     for (Pair& pair : pairs_) {
         const double edge = bodies_[pair.of_domains].lattice->edge, speed = approach(pair);
         pair.margin = std::max(least_margin * edge, speed * dt);

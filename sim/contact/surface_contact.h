@@ -41,11 +41,10 @@ class SurfaceContact : public ContactEnergy {
         const std::vector<HeldContact>& held;  // ascending
     };
 
-    /// The longest step that moves no vertex further into a body that it may touch than a part of its thickness. Looks at
-    /// the start, from which begin_step goes on.   [s]
+    /// The longest step that moves no vertex further into a body that it may touch than a part of its thickness.   [s]
     double largest_step(const Start& start, double dt);
 
-    /// Finds what may touch in the step to about x_expected (#C) of length dt [s], after largest_step of the same start.
+    /// Finds what may touch in the step to about x_expected (#C) of length dt [s].
     void begin_step(const Start& start, const Field& x_expected, double dt);
 
     /// Linearises anew at x. Returns by how much depths differ from those of the old linearisation, at most, as a share
