@@ -9,6 +9,7 @@ namespace {
 
 constexpr double dynamic_tolerance = 1e-3;  // of the inner forces of the step
 constexpr double semi_implicit_forcing = 1e-6;
+constexpr double short_step = 10;  // w dt, whose square times dynamic_tolerance is 0.1
 constexpr int contact_passes = 6;
 constexpr double depth_tolerance = 2e-3;  // of a linearised depth, in domain edges
 
@@ -123,19 +124,22 @@ void Stepper::end_implicit(State& state, double dt) {
 }
 
 void Stepper::keep_inner_force(State& state) {
+    // What free corners gained tells their forces. Of slaved corners stress tells more, but the solve leaves over a part of
+    // it, dynamic_tolerance, and the next guess would move them by (w dt)² as much: only where steps are short.
     std::swap(state.inner_force, state.inner_force_before);
-    for (std::size_t c = 0; c < state.x.size(); ++c)
-        state.inner_force[c] = -potential_.corner_gradient()[c];
-    // Points have no forces of their own: what the grid gives is shared by their masses.
     const auto& step = potential_.step();
     Field& change = q_;
     for (int i = 0; i < map_.n_dofs(); ++i)
         change[i] = (q_[i] - step.q_tilde[i]) * step.is_free[i];
     const Field& gained = map_.applied(change, corner_);
-    for (std::size_t b = 0; b < points_.size(); ++b)
-        if (points_[b])
-            for (int c = ranges_[b].begin; c < ranges_[b].end; ++c)
-                state.inner_force[c] += assembly_.mass[c] * gained[c] / dt_hat_;
+    const double damped = 1 + scene_.solver.damping * dt_hat_;
+    for (const AssembledBody& body : assembly_.bodies) {
+        const bool is_short = !body.points && dt_hat_ * body.highest_frequency < short_step;
+        for (int c = body.begin; c < body.end; ++c)
+            state.inner_force[c] = is_short && !free_[c]
+                                       ? -potential_.corner_gradient()[c]
+                                       : damped / dt_hat_ * assembly_.mass[c] * gained[c];
+    }
     if (state.last_dt == 0)
         state.inner_force_before = state.inner_force;
 }
