@@ -144,22 +144,24 @@ TEST_CASE("snow_bunny [Z18 fig 14]: snow keeps the crater, the bunny recovers it
     sim::Simulation simulation(shot.scene, 1 / shot.fps);
     const std::vector<Vec3f> at_rest = simulation.deformed_surfaces()[0].positions;
     const double top = height_under_feet(simulation);
-    double before = energy(simulation.stats()), worst = 0, last = 0;
-    for (int frame = 2; frame <= 18; ++frame) {
+    double before = energy(simulation.stats()), worst = 0, least = 0;
+    for (int frame = 2; frame <= 24; ++frame) {
         simulation.advance_to(shot.time_of(frame));
         const double now = energy(simulation.stats());
         CHECK(now < before);
         before = now;
-        last = distortion(at_rest, simulation.deformed_surfaces()[0].positions);
-        REQUIRE(std::isfinite(last));
+        const double distorted =
+            distortion(at_rest, simulation.deformed_surfaces()[0].positions);
+        REQUIRE(std::isfinite(distorted));
         REQUIRE(std::isfinite(height_under_feet(simulation)));
-        worst = std::max(worst, last);
+        least = distorted > worst ? distorted : std::min(least, distorted);
+        worst = std::max(worst, distorted);
     }
     // The elastic part of what snow gives way by is its compression limit of its height at most; the rest stays.
     const double crater = top - height_under_feet(simulation);
-    CAPTURE(crater, worst, last);
+    CAPTURE(crater, worst, least);
     CHECK(crater > 2 * 0.025 * 0.48);
-    CHECK(last < worst / 2);  // what its weight and its swinging ears make is left
+    CHECK(least < worst / 3);  // its ears swing on, through the shape that they had
 }
 
 TEST_CASE("snow_bunny [Z18 fig 14]: momentum changes by the weight alone") {
