@@ -30,6 +30,15 @@ inline sim::Body soft_block(
     return soft_body(name, assets::Box{low, low + size}, edge, E);
 }
 
+/// Holds what of a body stands on z = 0.
+inline sim::Pin foot_of(const char* body) {
+    sim::Pin foot;
+    foot.name = "foot";
+    foot.body = body;
+    foot.select.is = sim::Selector::HalfSpace{{0, 0, 0.001}, {0, 0, 1}};
+    return foot;
+}
+
 /// What a step may not add to, but for the energy of contact itself.   [J]
 inline double energy(const sim::Stats& stats) {
     return stats.kinetic_energy + stats.elastic_energy + stats.gravitational_energy;

@@ -47,11 +47,7 @@ TEST_CASE("a block slides down another or stays, as their friction on the grid s
     scene.bodies = {
         tests::soft_block("slab", {0, -0.2, 0}, {1.2, 0.6, 0.1}, edge, 1e7),
         tests::soft_block("top", {0.1 + aside, aside, 0.1001}, {0.2, 0.2, 0.1}, edge, 1e7)};
-    sim::Pin foot;
-    foot.name = "foot";
-    foot.body = "slab";
-    foot.select.is = sim::Selector::HalfSpace{{0, 0, 0.001}, {0, 0, 1}};
-    scene.pins = {foot};
+    scene.pins = {tests::foot_of("slab")};
     scene.probes = {{"top", "top", std::string("all")}};
     sim::Simulation simulation(scene, frame_time);
     const Vec3 start = simulation.probes()[0].position;

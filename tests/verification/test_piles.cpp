@@ -83,11 +83,7 @@ TEST_CASE(
     scene.contact.pairs = {{{"top", "slab"}, {false, mu}}};
     scene.bodies = {tests::soft_block("slab", {0, 0, 0}, {1.2, 0.2, 0.1}, 0.05, 1e7),
                     tests::soft_block("top", {0.1, 0, 0.1001}, {0.2, 0.2, 0.1}, 0.05, 1e7)};
-    sim::Pin foot;
-    foot.name = "foot";
-    foot.body = "slab";
-    foot.select.is = sim::Selector::HalfSpace{{0, 0, 0.001}, {0, 0, 1}};
-    scene.pins = {foot};
+    scene.pins = {tests::foot_of("slab")};
     scene.probes = {{"top", "top", std::string("all")}};
     sim::Simulation simulation(scene, frame_time);
     const double start = simulation.probes()[0].position.x();
