@@ -206,16 +206,15 @@ void Stepper::exchange_contact(const State& state, double dt) {
                                  {bodies[j].begin, bodies[j].end},
                                  std::max(bodies[i].lattice.edge, bodies[j].lattice.edge),
                                  friction_.between(int(i), int(j))});
-    if (pairs.empty())
+    GridContact contact(
+        pairs,
+        {state.x, assembly_.mass, assembly_.volume, assembly_.outside, prescribed_.is_free});
+    if (contact.is_empty())
         return;
     for (int pass = 0; pass < (map_.is_identity() ? 1 : passes_where_slaved); ++pass) {
         Field& change = corner_;
         change = moved_;
-        exchange_on_grid(
-            pairs,
-            {state.x, assembly_.mass, assembly_.volume, assembly_.outside, prescribed_.is_free},
-            dt,
-            change);
+        contact.exchange(dt, change);
         move_through_grid(change);
     }
 }

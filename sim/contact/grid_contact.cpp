@@ -1,12 +1,13 @@
 #include "sim/contact/grid_contact.h"
 
+#include "sim/contact/node_box.h"
 #include "sim/grid/kernel.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
+#include <utility>
 
 namespace sim {
 
@@ -23,10 +24,10 @@ struct Bounds {
     Vec3p low{}, high{};
 };
 
-/// The eight nodes of a corner's cell, and its weights there.
-struct Stencil {
-    std::array<int, 8> node{};
-    std::array<double, 8> weight{};
+/// A corner's share of a node that both bodies share.
+struct Share {
+    int corner = 0, node = 0;
+    double weight = 0;
 };
 
 /// One body's share of a node.
@@ -42,28 +43,25 @@ struct Node {
     std::array<Side, 2> side;
     std::array<Vec3, n_normals> normals;  // from the first body to the second
     std::array<Vec3, 2> dv{Vec3::Zero(), Vec3::Zero()};
-
-    bool is_shared() const { return side[0].mass > 0 && side[1].mass > 0; }
 };
 
-Bounds bounds_of(const ContactBody& body, const Field& x, const Field& velocity, double dt) {
+Bounds bounds_of(const ContactBody& body, const Field& x) {
     Bounds bounds{x[body.begin], x[body.begin]};
-    for (int c = body.begin; c < body.end; ++c)
-        for (const Vec3p& p : {x[c], x[c] + dt * velocity[c]}) {
-            bounds.low = p < bounds.low ? p : bounds.low;
-            bounds.high = p > bounds.high ? p : bounds.high;
-        }
+    for (int c = body.begin; c < body.end; ++c) {
+        bounds.low = x[c] < bounds.low ? x[c] : bounds.low;
+        bounds.high = x[c] > bounds.high ? x[c] : bounds.high;
+    }
     return bounds;
 }
 
-/// The part of space where both bodies can be, and all corners that a node there may see.
+/// The part of space that holds both bodies, and all corners that a node which they share may see.
 Bounds common(const Bounds& a, const Bounds& b, double cell_size) {
     const double margin = seen_cells * cell_size;
     return {(a.low > b.low ? a.low : b.low) - margin,
             (a.high < b.high ? a.high : b.high) + margin};
 }
 
-bool is_empty(const Bounds& bounds) {
+bool is_nowhere(const Bounds& bounds) {
     return bounds.low[0] > bounds.high[0] || bounds.low[1] > bounds.high[1]
            || bounds.low[2] > bounds.high[2];
 }
@@ -75,117 +73,125 @@ bool holds(const Bounds& bounds, const Vec3p& x) {
     return true;
 }
 
-/// Nodes of the common part of two bodies, numbered as they are met.
-class PairGrid {
+/// The lowest node of a stencil, and the distance from it in cells.
+std::pair<std::array<long, 3>, Vec3p> place(const Vec3p& x, double h, double shift) {
+    std::array<long, 3> base{};
+    Vec3p t{};
+    for (int k = 0; k < 3; ++k) {
+        const double scaled = x[k] / h, low = std::floor(scaled - shift);
+        base[k] = static_cast<long>(low);
+        t[k] = scaled - low;
+    }
+    return {base, t};
+}
+
+}  // namespace
+
+/// The nodes that two bodies share.
+class GridContact::Pair {
   public:
-    PairGrid(const ContactBody& a,
-             const ContactBody& b,
-             const ContactFields& fields,
-             const Bounds& where,
-             double h)
-        : fields_(fields), h_(h) {
-        for (const ContactBody* body : {&a, &b}) {
-            const int s = body == &b;
-            for (int c = body->begin; c < body->end; ++c)
-                if (holds(where, fields.x[c])) {
-                    corners_[s].push_back(c);
-                    stencils_[s].push_back(stencil(fields.x[c]));
-                }
-            add_mass(s);
+    Pair(const GridPair& pair, const ContactFields& fields, const Bounds& where)
+        : fields_(fields), friction_(pair.friction) {
+        std::array<std::vector<int>, 2> corners;
+        for (int s = 0; s < 2; ++s) {
+            const ContactBody& body = s == 0 ? pair.first : pair.second;
+            for (int c = body.begin; c < body.end; ++c)
+                if (holds(where, fields.x[c]))
+                    corners[s].push_back(c);
         }
+        const double h = pair.cell_size;
+        NodeBox numbers(where.low, where.high, h);
+        number_shared(corners, h, numbers);
+        if (nodes_.empty())
+            return;
         for (int s = 0; s < 2; ++s)
-            for (const int c : corners_[s])
-                add_gradient(s, c);
+            for (const int c : corners[s]) {
+                add_shares(s, c, h, numbers);
+                add_gradient(s, c, h, numbers);
+            }
         for (Node& node : nodes_)
-            if (node.is_shared())
-                find_normals(node);
+            find_normals(node);
     }
 
-    void sweep(double dt, const Friction& friction, Field& velocity) {
+    bool is_empty() const { return nodes_.empty(); }
+
+    void sweep(double dt, Field& velocity) {
         start_sweep();
-        for_shares([&](int s, int c, double weight, Node& node) {
-            Side& side = node.side[s];
-            side.momentum += weight * fields_.mass[c][0] * unpadded(velocity[c]);
-            const Vec3 x = unpadded(fields_.x[c] + dt * velocity[c]);
-            for (int n = 0; n < n_normals; ++n)
-                side.reach[n] =
-                    std::max(side.reach[n],
-                             (s == 0 ? 1 : -1) * node.normals[n].dot(x) - fields_.outside[c]);
-        });
+        for (int s = 0; s < 2; ++s)
+            for (const auto& [c, n, weight] : shares_[s]) {
+                Node& node = nodes_[n];
+                Side& side = node.side[s];
+                side.momentum += weight * fields_.mass[c][0] * unpadded(velocity[c]);
+                const Vec3 x = unpadded(fields_.x[c] + dt * velocity[c]);
+                for (int k = 0; k < n_normals; ++k)
+                    side.reach[k] = std::max(
+                        side.reach[k],
+                        (s == 0 ? 1 : -1) * node.normals[k].dot(x) - fields_.outside[c]);
+            }
         for (Node& node : nodes_)
-            if (node.is_shared())
-                exchange(node, friction);
-        for_shares([&](int s, int c, double weight, Node& node) {
-            velocity[c] += padded(weight * node.dv[s]) * fields_.is_free[c];
-        });
+            exchange(node, friction_);
+        for (int s = 0; s < 2; ++s)
+            for (const auto& [c, n, weight] : shares_[s])
+                velocity[c] += padded(weight * nodes_[n].dv[s]) * fields_.is_free[c];
     }
 
   private:
-    Stencil stencil(const Vec3p& x) {
-        Stencil result;
-        const auto [base, t] = place(x, 0);
+    /// visit(node's number, weight) of the eight nodes of a corner's cell that it has a part in.
+    template <class Visit>
+    static void for_linear(const Vec3p& x, double h, NodeBox& numbers, const Visit& visit) {
+        const auto [base, t] = place(x, h, 0);
         for (int a = 0; a < 8; ++a) {
-            std::array<long, 3> key = base;
-            double weight = 1;
-            for (int k = 0; k < 3; ++k) {
-                const int side = a >> k & 1;
-                weight *= side ? t[k] : 1 - t[k];
-                key[k] += side;
-            }
-            const auto [entry, is_new] =
-                number_of_.try_emplace(packed(key), static_cast<int>(nodes_.size()));
-            if (is_new)
-                nodes_.emplace_back();
-            result.weight[a] = weight;
-            result.node[a] = entry->second;
+            const int i = a & 1, j = a >> 1 & 1, k = a >> 2;
+            const double weight =
+                (i ? t[0] : 1 - t[0]) * (j ? t[1] : 1 - t[1]) * (k ? t[2] : 1 - t[2]);
+            if (weight > 0)
+                visit(numbers(base[0] + i, base[1] + j, base[2] + k), weight);
         }
-        return result;
     }
 
-    /// The lowest node of a stencil, and the distance from it in cells.
-    std::pair<std::array<long, 3>, Vec3p> place(const Vec3p& x, double shift) const {
-        std::array<long, 3> base{};
-        Vec3p t{};
-        for (int k = 0; k < 3; ++k) {
-            const double scaled = x[k] / h_, low = std::floor(scaled - shift);
-            base[k] = static_cast<long>(low);
-            t[k] = scaled - low;
-        }
-        return {base, t};
+    void number_shared(const std::array<std::vector<int>, 2>& corners,
+                       double h,
+                       NodeBox& numbers) {
+        constexpr int of_first = -2;
+        for (const int c : corners[0])
+            if (fields_.mass[c][0] > 0)
+                for_linear(fields_.x[c], h, numbers, [&](int& n, double) { n = of_first; });
+        for (const int c : corners[1])
+            if (fields_.mass[c][0] > 0)
+                for_linear(fields_.x[c], h, numbers, [&](int& n, double) {
+                    if (n != of_first)
+                        return;
+                    n = static_cast<int>(nodes_.size());
+                    nodes_.emplace_back();
+                });
     }
 
-    static std::uint64_t packed(const std::array<long, 3>& key) {
-        constexpr long half = 1 << 20;  // 21 bits per axis
-        return (static_cast<std::uint64_t>(key[0] + half) << 42)
-               ^ (static_cast<std::uint64_t>(key[1] + half) << 21)
-               ^ static_cast<std::uint64_t>(key[2] + half);
-    }
-
-    void add_mass(int s) {
-        for (std::size_t k = 0; k < corners_[s].size(); ++k)
-            for (int a = 0; a < 8; ++a)
-                nodes_[stencils_[s][k].node[a]].side[s].mass +=
-                    stencils_[s][k].weight[a] * fields_.mass[corners_[s][k]][0];
+    void add_shares(int s, int c, double h, NodeBox& numbers) {
+        for_linear(fields_.x[c], h, numbers, [&](int n, double weight) {
+            if (n < 0)
+                return;
+            shares_[s].push_back({c, n, weight});
+            nodes_[n].side[s].mass += weight * fields_.mass[c][0];
+        });
     }
 
     /// By quadratic splines: the slope of a linear one jumps where a corner passes a node, and a lattice that lies on the
     /// grid does so at every breath.
-    void add_gradient(int s, int c) {
+    void add_gradient(int s, int c, double h, NodeBox& numbers) {
         using Quadratic = Spline<2>;
-        const auto [base, t] = place(fields_.x[c], Quadratic::shift);
+        const auto [base, t] = place(fields_.x[c], h, Quadratic::shift);
         Vec3p w[Quadratic::n], slope[Quadratic::n];
         Quadratic::weights(t, w);
         Quadratic::slopes(t, slope);
-        const double scale = fields_.volume[c] / h_;
-        for (int i = 0; i < Quadratic::n; ++i)
+        const double volume = fields_.volume[c], scale = volume / h;
+        for (int k = 0; k < Quadratic::n; ++k)
             for (int j = 0; j < Quadratic::n; ++j)
-                for (int k = 0; k < Quadratic::n; ++k) {
-                    const auto found =
-                        number_of_.find(packed({base[0] + i, base[1] + j, base[2] + k}));
-                    if (found == number_of_.end())
+                for (int i = 0; i < Quadratic::n; ++i) {
+                    const int n = numbers(base[0] + i, base[1] + j, base[2] + k);
+                    if (n < 0)
                         continue;
-                    Side& side = nodes_[found->second].side[s];
-                    side.volume += fields_.volume[c] * w[i][0] * w[j][1] * w[k][2];
+                    Side& side = nodes_[n].side[s];
+                    side.volume += volume * w[i][0] * w[j][1] * w[k][2];
                     side.gradient += scale
                                      * Vec3(slope[i][0] * w[j][1] * w[k][2],
                                             w[i][0] * slope[j][1] * w[k][2],
@@ -234,19 +240,6 @@ class PairGrid {
         }
     }
 
-    /// Of every corner in the nodes that both bodies share.
-    template <class Visit>
-    void for_shares(const Visit& visit) {
-        for (int s = 0; s < 2; ++s)
-            for (std::size_t k = 0; k < corners_[s].size(); ++k)
-                for (int a = 0; a < 8; ++a) {
-                    const double weight = stencils_[s][k].weight[a];
-                    Node& node = nodes_[stencils_[s][k].node[a]];
-                    if (weight > 0 && node.is_shared())
-                        visit(s, corners_[s][k], weight, node);
-                }
-    }
-
     static void exchange(Node& node, const Friction& friction) {
         const auto& [a, b] = node.side;
         const Vec3 normal = least_overlap(node);
@@ -267,29 +260,35 @@ class PairGrid {
     }
 
     const ContactFields& fields_;
-    double h_ = 0;
-    std::array<std::vector<int>, 2> corners_;
-    std::array<std::vector<Stencil>, 2> stencils_;
-    std::unordered_map<std::uint64_t, int> number_of_;
+    Friction friction_;
+    std::array<std::vector<Share>, 2> shares_;
     std::vector<Node> nodes_;
 };
 
-}  // namespace
-
-void exchange_on_grid(const std::vector<GridPair>& pairs,
-                      const ContactFields& corners,
-                      double dt,
-                      Field& velocity) {
-    for (const auto& [first, second, cell_size, friction] : pairs) {
-        const Bounds where = common(bounds_of(first, corners.x, velocity, dt),
-                                    bounds_of(second, corners.x, velocity, dt),
-                                    cell_size);
-        if (is_empty(where))
+GridContact::GridContact(const std::vector<GridPair>& pairs, const ContactFields& corners)
+    : fields_(corners) {
+    for (const GridPair& pair : pairs) {
+        const Bounds where = common(bounds_of(pair.first, corners.x),
+                                    bounds_of(pair.second, corners.x),
+                                    pair.cell_size);
+        if (is_nowhere(where))
             continue;
-        PairGrid grid(first, second, corners, where, cell_size);
-        for (int k = 0; k < contact_sweeps; ++k)
-            grid.sweep(dt, friction, velocity);
+        Pair made(pair, fields_, where);
+        if (!made.is_empty())
+            pairs_.push_back(std::move(made));
     }
+}
+
+GridContact::~GridContact() = default;
+
+bool GridContact::is_empty() const {
+    return pairs_.empty();
+}
+
+void GridContact::exchange(double dt, Field& velocity) {
+    for (Pair& pair : pairs_)
+        for (int k = 0; k < contact_sweeps; ++k)
+            pair.sweep(dt, velocity);
 }
 
 }  // namespace sim

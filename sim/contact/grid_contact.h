@@ -32,8 +32,7 @@ struct ContactFields {
 /// All corners of a pair, free ones too, deposit mass and momentum on a grid. At a node where two bodies are
 /// present, approach each other, and overlap along the normal by the end of the step (largest n·x of the one against
 /// smallest of the other), they exchange the impulse m1 m2 / (m1 + m2) times the approach, with Coulomb friction; each
-/// corner gets Σ_i w_i dv_i back, so that momentum is exact. Repeated `contact_sweeps` times, pair after pair. Changes
-/// `velocity` (#C) [m/s].
+/// corner gets Σ_i w_i dv_i back, so that momentum is exact. Repeated `contact_sweeps` times, pair after pair.
 ///
 /// The normal is that of g1/V1 - g2/V2, with V = Σ_c V_c w_ic of a body and g its gradient, by quadratic splines; or of g1 or
 /// -g2 alone where along it the bodies overlap by much less. At the rim of one body the mean leans: a block that slides would
@@ -45,9 +44,24 @@ struct ContactFields {
 /// drifts, and misses by 6%. It rests within 0.01 domain edges, slaved 0.05. Corners alone are seen: two cubes that meet
 /// with a face on a face get 0.03 edges into each other at a fifth of the speed of waves, 0.3 at that speed; a rim between
 /// two rows of the other's corners 0.3 to 0.5, and 1.1. Contact between surfaces keeps to 0.02.
-void exchange_on_grid(const std::vector<GridPair>& pairs,
-                      const ContactFields& corners,
-                      double dt,
-                      Field& velocity);
+///
+/// Holds for one step: `corners` must stay as they are as long as it lives.
+class GridContact {
+  public:
+    /// Throws Error(Diverged) where two bodies spread over more cells than can be held.
+    GridContact(const std::vector<GridPair>& pairs, const ContactFields& corners);
+    ~GridContact();
+
+    /// Whether no two bodies are near each other.
+    bool is_empty() const;
+
+    /// Changes `velocity` (#C), which would move the corners in a step of dt.   [m/s]
+    void exchange(double dt, Field& velocity);
+
+  private:
+    class Pair;
+    ContactFields fields_;
+    std::vector<Pair> pairs_;
+};
 
 }  // namespace sim

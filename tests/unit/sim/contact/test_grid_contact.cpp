@@ -38,7 +38,7 @@ struct Cubes {
         for (std::size_t i = 0; i < bodies.size(); ++i)
             for (std::size_t j = i + 1; j < bodies.size(); ++j)
                 pairs.push_back({bodies[i], bodies[j], s, friction});
-        sim::exchange_on_grid(pairs, {x, mass, volume, outside, is_free}, dt, velocity);
+        sim::GridContact(pairs, {x, mass, volume, outside, is_free}).exchange(dt, velocity);
     }
 
     Vec3 momentum(int b) const {
@@ -147,10 +147,9 @@ TEST_CASE("a block that slides on a plate is pushed off its face, not along it")
     const int end = static_cast<int>(x.size());
     const Field before = velocity;
     const double mu = GENERATE(0.0, 0.1);
-    sim::exchange_on_grid({{{0, plate}, {plate, end}, s, {false, mu}}},
-                          {x, mass, volume, outside, is_free},
-                          dt,
-                          velocity);
+    sim::GridContact({{{0, plate}, {plate, end}, s, {false, mu}}},
+                     {x, mass, volume, outside, is_free})
+        .exchange(dt, velocity);
     Vec3 impulse = Vec3::Zero();
     for (int c = plate; c < end; ++c)
         impulse += sim::unpadded(velocity[c] - before[c]);
