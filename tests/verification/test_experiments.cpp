@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -33,6 +34,22 @@ double soft_share(const sim::Simulation& simulation) {
     const double lower = 0.25 - (height("y450") - height("y200"));
     const double upper = 0.25 - (height("y900") - height("y650"));
     return (lower + upper) / (1.1 - height("y1100"));
+}
+
+/// Strains of the rows of the shot `rows` in the middle, from below, when the pull has ended.
+std::array<double, 9> row_strains(const std::string& method) {
+    constexpr double height = 0.1;  // of a row [m]
+    shots::Shot shot = load("rows", method);
+    shot.scene.probes.clear();
+    for (int k = 0; k <= 9; ++k)
+        shot.scene.probes.push_back({"", "rows", Vec3(0, height * (k - 4.5), 0)});
+    sim::Simulation simulation(shot.scene, 1 / shot.fps);
+    simulation.advance_to(shot.time_of(25));
+    const std::vector<sim::ProbeRow> at = simulation.probes();
+    std::array<double, 9> strains{};
+    for (int k = 0; k < 9; ++k)
+        strains[k] = (at[k + 1].position.y() - at[k].position.y()) / height - 1;
+    return strains;
 }
 
 }  // namespace
@@ -67,22 +84,36 @@ TEST_CASE("two_balls [Z18 fig 10]: softer parts stretch more, by enriched as by 
     CHECK(domains["left"] - domains["right"] < enriched["left"] - enriched["right"]);
 }
 
-TEST_CASE("rows [Z18 fig 3]: rows inside one cell keep their own strain, but for domains") {
+TEST_CASE("rows [Z18 fig 3]: rows inside one cell keep their own strain") {
     const int frame = 25;  // the pull ends
     auto fem = stretches(load("rows", "fem"), frame);
     auto enriched = stretches(load("rows", "enriched"), frame);
-    auto domains = stretches(load("rows", "domains"), frame);
     const auto strain_ratio = [](std::map<std::string, double>& of) {
         return (of["soft"] - 1) / (of["hard"] - 1);
     };
-    CAPTURE(strain_ratio(fem), strain_ratio(enriched), strain_ratio(domains));
+    CAPTURE(strain_ratio(fem), strain_ratio(enriched));
     CHECK(enriched["soft"] == Approx(fem["soft"]).epsilon(0.05));
     CHECK(enriched["hard"] == Approx(fem["hard"]).epsilon(0.05));
     CHECK(enriched["soft"] / enriched["hard"]
           == Approx(fem["soft"] / fem["hard"]).epsilon(0.05));
     CHECK(strain_ratio(fem) > 5);
     CHECK(strain_ratio(enriched) > 5);
-    CHECK(strain_ratio(domains) < 1.5);
+}
+
+TEST_CASE("rows [Z18 fig 3]: by domains, rows inside one cell all strain alike") {
+    const std::array<double, 9> strains = row_strains("domains");
+    for (int k = 2; k <= 7; ++k) {
+        CAPTURE(k);
+        CHECK(strains[k] == Approx(strains[1]).epsilon(0.01));
+    }
+    // The lowest and the highest row, hard ones, are in series with the cell: the pins move their outer corners, the nodes
+    // the inner. Together seven rows of 0.1 and 1 MPa at one strain have (4 x 0.1 + 3 x 1) / 7 = 0.49 of the modulus of a
+    // hard row; at such strains stiffening changes that by little.
+    for (const int k : {0, 8}) {
+        CAPTURE(k);
+        CHECK(strains[k] < 0.55 * strains[1]);
+        CHECK(strains[k] > 0.35 * strains[1]);
+    }
 }
 
 TEST_CASE("layered_cube [Z18 fig 8]: the soft layers take their share of series springs") {
