@@ -90,7 +90,7 @@ void Assembly::add_body(const Body& body, const SolverOptions& solver) {
     for (const std::string& repair : repairs)
         notes.push_back("body \"" + body.name + "\": " + repair);
     if (const auto& points = bodies.back().points)
-        add_points(body, *points);
+        add_points(body, bodies.back().lattice, *points);
     else
         add_corners(body, bodies.back().lattice);
 }
@@ -107,7 +107,9 @@ void Assembly::add_corners(const Body& body, const Lattice& lattice) {
     }
 }
 
-void Assembly::add_points(const Body& body, const MaterialPoints& points) {
+void Assembly::add_points(const Body& body,
+                          const Lattice& lattice,
+                          const MaterialPoints& points) {
     const Vec3 centre = centre_of_mass(points.mass, points.rest);
     for (int p = 0; p < points.size(); ++p) {
         rest.push_back(padded(points.rest[p]));
@@ -115,7 +117,8 @@ void Assembly::add_points(const Body& body, const MaterialPoints& points) {
         volume.push_back(points.volume[p]);
         initial_velocity.push_back(
             padded(body.velocity + body.spin.cross(points.rest[p] - centre)));
-        outside.push_back(-points.spacing / 2);  // a point stands for a little cube
+        // A point stands for a little cube, which ends at the body's surface.
+        outside.push_back(std::max(lattice.centre_outside[p], -points.spacing / 2));
     }
 }
 

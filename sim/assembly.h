@@ -80,7 +80,7 @@ struct Assembly {
   private:
     void add_body(const Body& body, const SolverOptions& solver);
     void add_corners(const Body& body, const Lattice& lattice);
-    void add_points(const Body& body, const MaterialPoints& points);
+    void add_points(const Body& body, const Lattice& lattice, const MaterialPoints& points);
     void add_force(const Scene& scene, const DeadLoad& load);
     void add_pin(const Scene& scene, const Pin& pin);
     void add_probe(const Scene& scene, const Probe& probe);

@@ -107,7 +107,8 @@ Stats stats_of(Assembly& assembly, const Stepper& stepper, const State& state) {
                 assembly.mass[c][0] * Vec3::Unit(j).cross(unpadded(state.affine[c].column[j]));
     for (const HeldContact& contact : state.contacts)
         stats.elastic_energy += contact.energy;
-    stats.collider_penetration = stepper.colliders().deepest_penetration(state.x, state.time);
+    stats.collider_penetration =
+        stepper.colliders().deepest_penetration(state.x, state.time).share;
     const SurfaceContact::Report contact = stepper.surfaces().report(state.x);
     stats.penetration = contact.penetration;
     stats.gap = contact.gap;

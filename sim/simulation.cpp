@@ -2,6 +2,7 @@
 
 #include "assets/base/error.h"
 #include "sim/collider_surface.h"
+#include "sim/overlap.h"
 #include "sim/report.h"
 #include "sim/stepper.h"
 
@@ -38,6 +39,7 @@ struct Simulation::Impl {
         state.inner_force_before = state.inner_force;
         for (const Body& body : scene.bodies)
             state.top_speed.push_back(body.velocity.norm());
+        refuse_overlap(scene, assembly, stepper.colliders(), state.x, state.time);
         stepper.start(state);
         if (scene.solver.steps == Steps::Static)
             stepper.equilibrium(state, 0);

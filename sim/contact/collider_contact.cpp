@@ -215,15 +215,24 @@ void ColliderContact::add_diagonal(Field& diagonal) const {
         diagonal[block.corner] += padded(block.hessian.diagonal());
 }
 
-double ColliderContact::deepest_penetration(const Field& x, double time) const {
-    double deepest = 0;
-    for (const MovingCollider& collider : colliders_) {
-        const Pose pose = collider.pose(time);
+ColliderContact::Penetration ColliderContact::deepest_penetration(const Field& x,
+                                                                  double time) const {
+    return deepest_penetration(x, time, std::vector<char>(x.size(), 0));
+}
+
+ColliderContact::Penetration ColliderContact::deepest_penetration(
+    const Field& x, double time, const std::vector<char>& held) const {
+    Penetration deepest;
+    for (std::size_t j = 0; j < colliders_.size(); ++j) {
+        const Pose pose = colliders_[j].pose(time);
         for (const ContactCorner& corner : corners_) {
+            if (held[corner.corner])
+                continue;
             Vec3 normal;
             const double depth =
-                depth_of(corner, collider, pose, unpadded(x[corner.corner]), normal);
-            deepest = std::max(deepest, depth / corner.edge);
+                depth_of(corner, colliders_[j], pose, unpadded(x[corner.corner]), normal);
+            if (depth / corner.edge > deepest.share)
+                deepest = {depth / corner.edge, depth, corner.corner, static_cast<int>(j)};
         }
     }
     return deepest;

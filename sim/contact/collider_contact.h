@@ -63,8 +63,20 @@ class ColliderContact : public ContactEnergy {
     /// comes of it (Moreau's stepping). Returns whether there was anything to take.
     bool restrain(const Field& x, double dt, Field& v) const;
 
-    /// The deepest penetration at x and `time`, as a share of the domain's edge.
-    double deepest_penetration(const Field& x, double time) const;
+    /// Of a corner in a collider.
+    struct Penetration {
+        double share = 0;  // depth over the domain's edge; 0 where nothing penetrates
+        double depth = 0;  // [m]
+        int corner = -1, collider = -1;  // in the field of all corners, in the scene
+    };
+
+    /// The deepest one at x and `time`, in domain edges.
+    Penetration deepest_penetration(const Field& x, double time) const;
+
+    /// The same of corners but those `held` (#C).
+    Penetration deepest_penetration(const Field& x,
+                                    double time,
+                                    const std::vector<char>& held) const;
 
   private:
     struct Touch {

@@ -122,6 +122,22 @@ void set_corner_shares(const CubeGrid& grid, const assets::Solid& solid, Lattice
         }
 }
 
+void set_centres(const std::vector<FilledCube>& cubes,
+                 const CubeGrid& grid,
+                 const assets::Solid& solid,
+                 Lattice& lattice) {
+    lattice.filled_centre.resize(cubes.size());
+    lattice.centre_outside.resize(cubes.size());
+    tbb::parallel_for(std::size_t{0}, cubes.size(), [&](std::size_t p) {
+        const FilledCube& cube = cubes[p];
+        const Vec3 middle = cube.moment / (cube.filled * samples_per_edge);
+        const Vec3 X = grid.point(
+            cube.cell[0] + middle.x(), cube.cell[1] + middle.y(), cube.cell[2] + middle.z());
+        lattice.filled_centre[p] = X;
+        lattice.centre_outside[p] = solid.signed_distance(X);
+    });
+}
+
 }  // namespace
 
 Lattice make_lattice(const Body& body, std::vector<std::string>* repairs) {
@@ -145,11 +161,7 @@ Lattice make_lattice(const Body& body, std::vector<std::string>* repairs) {
     lattice.edge = grid.edge;
     lattice.origin = grid.origin;
     set_domains(cubes, body.regions, lattice);
-    for (const FilledCube& cube : cubes) {
-        const Vec3 middle = cube.moment / (cube.filled * samples_per_edge);
-        lattice.filled_centre.push_back(grid.point(
-            cube.cell[0] + middle.x(), cube.cell[1] + middle.y(), cube.cell[2] + middle.z()));
-    }
+    set_centres(cubes, grid, solid, lattice);
     set_corners(grid.n, lattice);
     Links links(grid, solid, cubes);
     separate_corners(links, grid, solid, cubes, lattice);

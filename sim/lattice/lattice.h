@@ -26,6 +26,7 @@ struct Lattice {
     std::vector<std::array<int, 8>> corners;  // (#D) its corners
     std::vector<double> fill;                 // (#D) filled fraction of the cube, (0, 1]
     std::vector<Vec3> filled_centre;          // (#D) centroid of the filled part [m]
+    std::vector<double> centre_outside;  // (#D) its signed distance from the body's surface [m]
     std::vector<int> region;                  // (#D) region with the largest share
     std::vector<double> mu,
         lambda;  // (#D) Lamé parameters of the filled part [Pa], share-weighted
