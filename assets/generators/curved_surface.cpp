@@ -1,22 +1,22 @@
 #include "assets/base/error.h"
 #include "assets/generators/procedural_surface.h"
+#include "assets/generators/surface_point.h"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/VolumeToMesh.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace assets {
 
 namespace {
 
 constexpr float band = 3;  // of the level set [voxels]
-
-// Vertices this near to a cylinder's rim move onto it: every voxel that a rim crosses has its vertex nearer.
-constexpr double rim_reach = 0.7;  // [voxels]
 
 /// The level set of a shape; index (i,j,k) lies at low + spacing (i,j,k).
 openvdb::FloatGrid::Ptr level_set(const Shape& shape,
@@ -25,46 +25,31 @@ openvdb::FloatGrid::Ptr level_set(const Shape& shape,
                                   double spacing) {
     auto grid = openvdb::FloatGrid::create(band);
     grid->setGridClass(openvdb::GRID_LEVEL_SET);  // decides how faces are turned
-    auto voxels = grid->getAccessor();
-    for (int k = 0; k < n[2]; ++k)
+
+    struct Voxel {
+        openvdb::Coord at;
+        float distance = 0;
+    };
+
+    std::vector<std::vector<Voxel>> layers(n[2]);
+    tbb::parallel_for(0, n[2], [&](int k) {
         for (int j = 0; j < n[1]; ++j)
             for (int i = 0; i < n[0];) {
                 const double distance =
                     signed_distance(shape, low + spacing * Vec3(i, j, k)) / spacing;
                 if (std::abs(distance) < band)
-                    voxels.setValue(openvdb::Coord(i, j, k), static_cast<float>(distance));
+                    layers[k].push_back(
+                        {openvdb::Coord(i, j, k), static_cast<float>(distance)});
                 i += std::max(
                     1, static_cast<int>(std::abs(distance) - band));  // no surface is nearer
             }
+    });
+    auto voxels = grid->getAccessor();
+    for (const std::vector<Voxel>& layer : layers)
+        for (const auto& [at, distance] : layer)
+            voxels.setValue(at, distance);
     openvdb::tools::signedFloodFill(grid->tree());
     return grid;
-}
-
-/// Newton's method on the signed distance, along its gradient.
-Vec3 onto_surface(const Shape& shape, Vec3 x, double spacing) {
-    const double h = 1e-4 * spacing;
-    for (int step = 0; step < 3; ++step) {
-        Vec3 gradient;
-        for (int i = 0; i < 3; ++i)
-            gradient[i] = (signed_distance(shape, x + h * Vec3::Unit(i))
-                           - signed_distance(shape, x - h * Vec3::Unit(i)))
-                          / (2 * h);
-        if (gradient.squaredNorm() > 0)
-            x -= signed_distance(shape, x) / gradient.squaredNorm() * gradient;
-    }
-    return x;
-}
-
-/// Whether x is within `reach` of a rim of a cylinder, and the nearest point of that rim.
-bool near_rim(const Cylinder& cylinder, const Vec3& x, double reach, Vec3& on_rim) {
-    const Vec3 axis = (cylinder.to - cylinder.from).normalized();
-    for (const Vec3& center : {cylinder.from, cylinder.to}) {
-        const Vec3 flat = x - center - (x - center).dot(axis) * axis;
-        on_rim = center + cylinder.radius * flat.normalized();
-        if ((x - on_rim).norm() < reach)
-            return true;
-    }
-    return false;
 }
 
 /// A quad of the level set's mesh, clockwise, as two triangles, counter-clockwise, cut along the given diagonal.
@@ -108,21 +93,23 @@ TriangleMesh curved_surface(const Shape& shape, double spacing) {
     openvdb::tools::volumeToMesh(*level_set(shape, low, n, spacing), points, quads);
 
     TriangleMesh mesh;
-    std::vector<char> on_rim(points.size(), false);
-    const Cylinder* cylinder = std::get_if<Cylinder>(&shape);
-    for (std::size_t v = 0; v < points.size(); ++v) {
-        const Vec3 x = low + spacing * Vec3(points[v].x(), points[v].y(), points[v].z());
-        Vec3 rim;
-        on_rim[v] = cylinder && near_rim(*cylinder, x, rim_reach * spacing, rim);
-        mesh.positions.push_back(on_rim[v] ? rim : onto_surface(shape, x, spacing));
-    }
+    mesh.positions.resize(points.size());
+    std::vector<char> is_sharp(points.size(), false);
+    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t v) {
+        const Vec3 voxels(points[v].x(), points[v].y(), points[v].z()),
+            cell = voxels.array().floor();
+        const SurfacePoint found =
+            surface_point(shape, low + spacing * cell, spacing, low + spacing * voxels);
+        mesh.positions[v] = found.position;
+        is_sharp[v] = found.is_sharp;
+    });
     for (const openvdb::Vec4I& q : quads) {
         const std::array<int, 4> quad{static_cast<int>(q[0]),
                                       static_cast<int>(q[1]),
                                       static_cast<int>(q[2]),
                                       static_cast<int>(q[3])};
         const auto diagonal = [&](int i) {
-            return on_rim[quad[i]] && on_rim[quad[i + 2]]
+            return is_sharp[quad[i]] && is_sharp[quad[i + 2]]
                        ? 0.0
                        : (mesh.positions[quad[i]] - mesh.positions[quad[i + 2]]).norm();
         };

@@ -10,8 +10,8 @@ namespace assets {
 /// vertices of their common edges.   [m]
 TriangleMesh box_surface(const Box& box, double spacing);
 
-/// From an OpenVDB level set of voxels of `spacing`, the vertices moved onto the surface. The rims of a cylinder are
-/// edges of the mesh.   [m]
+/// From an OpenVDB level set of voxels of `spacing`, the vertices moved onto the surface, and onto its edges and corners
+/// where it has such: these are edges of the mesh.   [m]
 TriangleMesh curved_surface(const Shape& shape, double spacing);
 
 }  // namespace assets

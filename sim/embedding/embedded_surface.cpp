@@ -23,15 +23,15 @@ constexpr double crease_angle = 40 * pi / 180;  // [rad]
 // Regions are asked for this far under the surface, where the surface itself is a region's boundary. [domain edges]
 constexpr double hair = 1e-3;
 
-// A domain deforms trilinearly, so half an edge shows all it can do; but round shapes in few domains should still
-// look round.
+// A domain deforms trilinearly, so half an edge shows all it can do. But round shapes in few domains should still look
+// round, and rims that are thinner than a domain smooth.
 double spacing(const assets::Source& source, double domain_size) {
     constexpr double across = 48;
     const assets::Shape* shape = std::get_if<assets::Shape>(&source.geometry);
     if (!shape || std::holds_alternative<assets::Box>(*shape))
         return domain_size / 2;
     const auto solid = make_solid(source, domain_size, domain_size);
-    return std::min(domain_size / 2, (solid->max - solid->min).maxCoeff() / across);
+    return std::min(domain_size / 4, (solid->max - solid->min).maxCoeff() / across);
 }
 
 /// The square root of the largest eigenvalue of C = F^T F, from the cubic's trigonometric solution.
