@@ -14,7 +14,8 @@ constexpr double safety = 0.8;  // of the stable step of the bodies at rest: str
 constexpr double most_excited =
     1.9;                            // w dt of the motion seen; beyond 2 it grows without bound
 constexpr double most_cells = 0.3;  // that a corner may pass in a step
-constexpr int contact_passes = 2;
+constexpr int contact_passes = 6;
+constexpr double depth_tolerance = 1e-3;  // of a linearised depth, in domain edges
 constexpr double noise =
     1e-8;  // of the kinetic energy: strain energy too small to tell a frequency
 
@@ -114,26 +115,34 @@ bool Stepper::try_explicit(State& state, double dt) {
 }
 
 void Stepper::restrain_by_contact(const State& state, double dt) {
-    if (colliders_.empty() && surfaces_.empty())
+    restrain_by_surfaces(state, dt);
+    if (colliders_.empty())
         return;
     Field& change = end_gradient_;  // not known yet
     change = moved_;
-    bool is_hit = false;
-    for (int pass = 0; pass < contact_passes && !surfaces_.empty(); ++pass) {
+    if (colliders_.restrain(state.x, dt, change))
+        move_through_grid(change);
+}
+
+void Stepper::restrain_by_surfaces(const State& state, double dt) {
+    if (surfaces_.empty())
+        return;
+    Field inverse_mass(map_.n_dofs());
+    for (int i = 0; i < map_.n_dofs(); ++i)
+        inverse_mass[i] = inverse_mass_[i] * potential_.step().is_free[i];
+    for (int pass = 0; pass < contact_passes; ++pass) {
         // Found where the corners would end: again, as they end elsewhere once they are restrained.
         for (std::size_t c = 0; c < moved_.size(); ++c)
-            corner_[c] = state.x[c] + dt * change[c];
+            corner_[c] = state.x[c] + dt * moved_[c];
         if (pass == 0)
             surfaces_.begin_step(
                 {state.x, state.v, state.top_speed, state.contacts}, corner_, dt);
-        else
-            surfaces_.relinearize(corner_);
-        if (!surfaces_.restrain(state.x, assembly_.mass, dt, change))
-            break;
-        is_hit = true;
+        else if (surfaces_.relinearize(corner_) < depth_tolerance)
+            return;
+        if (!surfaces_.restrain(state.x, map_, inverse_mass, dt, q_moved_) && pass == 0)
+            return;
+        moved_ = map_.applied(q_moved_, moved_);
     }
-    if (colliders_.restrain(state.x, dt, change) || is_hit)
-        move_through_grid(change);
 }
 
 void Stepper::set_explicit_reactions(const State& state, double dt) {

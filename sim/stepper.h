@@ -118,6 +118,7 @@ class Stepper {
     double seen_frequency(const State& state) const;
     bool try_explicit(State& state, double dt);
     void restrain_by_contact(const State& state, double dt);
+    void restrain_by_surfaces(const State& state, double dt);
     void set_explicit_reactions(const State& state, double dt);
 
     // equilibrium.cpp

@@ -6,6 +6,7 @@
 #include "sim/contact/fold_watch.h"
 #include "sim/contact/grip.h"
 #include "sim/contact/pair_friction.h"
+#include "sim/grid/corner_map.h"
 
 #include <vector>
 
@@ -62,11 +63,15 @@ class SurfaceContact : public ContactEnergy {
     /// Whether a vertex has begun or ceased to touch since the start of the step that has led to x.
     bool has_changed_touch(const Field& x) const;
 
-    /// What contact takes from velocities v (#C) of corners of masses m (#C) [kg] that would move them from x in an
-    /// explicit step of dt: the part that would end inside, as impulses between vertex and domain, and friction of up to
-    /// mu times as much. Inelastic, so that no energy comes of it. Repeated, vertex after vertex, `restrain_sweeps` times.
-    /// Returns whether there was anything to take.
-    bool restrain(const Field& x, const Field& m, double dt, Field& v) const;
+    /// What contact takes from velocities q of the degrees of freedom that would move corners from x in an explicit step of
+    /// dt: impulses between vertices and domains that end the step where they touch, through the map, as only what it lets
+    /// through moves corners, and friction of up to mu times as much. Inelastic, so that no energy comes of it.
+    /// `inverse_mass` (#dofs) is 0 in prescribed components [1/kg]. Returns whether there was anything to take.
+    bool restrain(const Field& x,
+                  const CornerMap& map,
+                  const Field& inverse_mass,
+                  double dt,
+                  Field& q) const;
 
     /// Deepest penetration and smallest gap at x, as shares of the domain's edge; gaps are known up to `reach`.
     struct Report {

@@ -3,6 +3,8 @@
 #include "sim/base/parallel.h"
 #include "sim/grid/kernel.h"
 
+#include <algorithm>
+
 namespace sim {
 
 namespace {
@@ -115,6 +117,31 @@ void CornerMap::apply(const Field& q, Field& u) const {
                     }
                 });
         });
+}
+
+void CornerMap::find_row(int corner, std::vector<Weight>& row) const {
+    row.clear();
+    if (const int i = dof_of_corner_[corner]; i >= 0) {
+        row.push_back({i, 1});
+        return;
+    }
+    const int slave = slave_of_corner_[corner];
+    const auto after =
+        std::upper_bound(groups_.begin(), groups_.end(), slave, [](int s, const Group& g) {
+            return s < g.begin;
+        });
+    const int group = static_cast<int>(after - groups_.begin()) - 1;
+    const Part& part = *std::find_if(
+        parts_.begin(), parts_.end(), [&](const Part& p) { return group < p.last_group; });
+    visit_spline(part.kernel, [&]<class S>(S) {
+        constexpr int n = S::n, per_group = n * n * n;
+        const int* nodes =
+            &group_nodes_[part.first_entry + (group - part.first_group) * per_group];
+        Vec3p w[n];
+        S::weights(slave_local_[slave], w);
+        for (int a = 0; a < per_group; ++a)
+            row.push_back({nodes[a], w[a % n][0] * (w[a / n % n][1] * w[a / (n * n)][2])});
+    });
 }
 
 template <class S, class Write>

@@ -68,6 +68,15 @@ class CornerMap {
     /// d_i = Σ_c T_ci² k_c: a stand-in for the diagonal of Tᵀ diag(k) T.   k (#C), d (#dofs)
     void apply_squared_transposed(const Field& k, Field& d) const;
 
+    /// T_ci of one corner c and one degree of freedom i.
+    struct Weight {
+        int dof = 0;
+        double weight = 0;
+    };
+
+    /// Puts the row of T at a corner in `row`, for the few that are asked one by one.
+    void find_row(int corner, std::vector<Weight>& row) const;
+
     /// What stands for ∂w_i/∂x_j in G: the slope of the kernel; its square, for diagonals; or w_i (x_i - x)_j, whose sum
     /// with v_i is the affine momentum of [JSS15 eq. 10].
     enum class Factor { Slope, SlopeSquared, Moment };
@@ -142,6 +151,7 @@ class CornerMap {
     std::vector<int>
         node_sources_;  // entries that a node sums, -1 where none; (order + 1)³ a node
     std::vector<int> slave_corner_;                         // (#slaves) grouped
+    std::vector<int> slave_of_corner_;                      // (#C) where it is no free one
     Field slave_local_;                                     // (#slaves) t of Spline
     std::vector<std::array<double, 8>> trilinear_weights_;  // of slaves with linear kernels
     mutable Field group_sums_;                              // (#entries) scratch of the gathers

@@ -29,6 +29,7 @@ void CornerMap::rebuild(const Field& corners,
                         const std::vector<char>& free,
                         const std::vector<BodyRange>& bodies) {
     dof_of_corner_.assign(corners.size(), -1);
+    slave_of_corner_.resize(corners.size());
     free_corner_.clear();
     dof_body_.clear();
     dof_position_.clear();
@@ -139,6 +140,7 @@ void CornerMap::sort_slaves(const Field& corners,
         const int slave = first_slave + cell_start_[cell_of_slave_[k]]++;
         const Vec3p scaled = corners[slave_order_[k]] * inverse_size;
         slave_corner_[slave] = slave_order_[k];
+        slave_of_corner_[slave_order_[k]] = slave;
         // Where the product is not rounded before the difference (a fused instruction) a point on a node may come out a
         // rounding below it: its weights would be negative, and a node's mass the difference of such.
         const Vec3p local = scaled - floor_of(scaled - shift), least = Vec3p{} + shift;

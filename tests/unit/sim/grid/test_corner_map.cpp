@@ -100,6 +100,23 @@ TEST_CASE("T has unit rows at free corners and hat functions of grid nodes at th
     }
 }
 
+TEST_CASE("a row of T asked for by itself is the one that T is made of, for every kernel") {
+    Sample s = sample(offsets[1]);
+    s.bodies[0].kernel = GENERATE(sim::Kernel::Linear, sim::Kernel::Quadratic);
+    s.bodies[1].kernel = sim::Kernel::Cubic;
+    s.map.rebuild(s.corners, s.free, s.bodies);
+    const Eigen::MatrixXd T = dense(s);
+    std::vector<CornerMap::Weight> weights;
+    for (int c = 0; c < s.n_corners(); ++c) {
+        s.map.find_row(c, weights);
+        Eigen::VectorXd row = Eigen::VectorXd::Zero(s.map.n_dofs());
+        for (const auto& [dof, weight] : weights)
+            row[dof] += weight;
+        CHECK((row - T.row(c).transpose()).cwiseAbs().maxCoeff() < 1e-15);
+        CHECK(row.sum() == Approx(1));
+    }
+}
+
 TEST_CASE("bodies share no node, and no node is numbered twice") {
     const Sample s = sample(offsets[1]);
     const Eigen::MatrixXd T = dense(s);
