@@ -154,12 +154,12 @@ Vec3 ColliderContact::gradient_of(const Touch& touch, const Field& x, double& en
     return g;
 }
 
-Mat3 ColliderContact::hessian_of(const Touch& touch, const Field& x) const {
+Mat3 ColliderContact::hessian_of(const Touch& touch) {
     Mat3 H = Mat3::Zero();
     if (touch.depth > 0)
         H += touch.stiffness * touch.normal * touch.normal.transpose();
     if (touch.grip.holds())
-        H += touch.grip.hessian(unpadded(x[touch.corner]));
+        H += touch.grip.hessian();
     return H;
 }
 
@@ -199,9 +199,13 @@ bool ColliderContact::restrain(const Field& x, double dt, Field& v) const {
 
 void ColliderContact::linearize(const Field& x) {
     blocks_.clear();
+    for (std::size_t k = 0; k < corners_.size(); ++k)
+        for (std::size_t j = 0; j < colliders_.size(); ++j)
+            if (Grip& grip = grips_[k * colliders_.size() + j]; grip.holds())
+                grip.linearize(unpadded(x[corners_[k].corner]));
     if (!empty())
         for_touching(x, [&](const Touch& touch) {
-            blocks_.push_back({touch.corner, hessian_of(touch, x)});
+            blocks_.push_back({touch.corner, hessian_of(touch)});
         });
 }
 

@@ -94,7 +94,7 @@ class ColliderContact : public ContactEnergy {
     };
 
     Vec3 gradient_of(const Touch& touch, const Field& x, double& energy) const;
-    Mat3 hessian_of(const Touch& touch, const Field& x) const;
+    static Mat3 hessian_of(const Touch& touch);
     double depth_of(const ContactCorner& corner,
                     const MovingCollider& collider,
                     const Pose& pose,

@@ -1,5 +1,7 @@
 #include "sim/contact/grip.h"
 
+#include <algorithm>
+
 namespace sim {
 
 namespace {
@@ -40,13 +42,26 @@ double Grip::add_gradient(const Vec3& u, Vec3& g) const {
     return is_elastic ? stiffness / 2 * y * y : force * (y - slip_length / 2);
 }
 
-Mat3 Grip::hessian(const Vec3& u) const {
+void Grip::linearize(const Vec3& u) {
     const Mat3 P = Mat3::Identity() - normal * normal.transpose();
     const Vec3 slip = P * (u - origin);
     const double y = slip.norm();
-    if (y < slip_length)
-        return stiffness * P;
-    return force / y * (P - slip * slip.transpose() / (y * y));
+    // The w that the last linearisation asks for, shortened to the unit disc.
+    if (const double y_before = slip_.norm(); y_before > 0) {
+        const double most = std::max(y_before, slip_length);
+        const bool slid = y_before >= slip_length;
+        const Vec3 turn =
+            slid ? Vec3(direction_ * (slip_.dot(slip - slip_) / most)) : Vec3::Zero();
+        direction_ = (slip - turn) / most;
+        direction_ /= std::max(1.0, direction_.norm());
+    }
+    slip_ = slip;
+    if (y < slip_length) {
+        hessian_ = stiffness * P;
+        return;
+    }
+    const Mat3 turned = direction_ * slip.transpose() / y;
+    hessian_ = force / y * (P - (turned + turned.transpose()) / 2);
 }
 
 }  // namespace sim

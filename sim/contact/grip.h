@@ -32,8 +32,23 @@ struct Grip {
     /// Adds the gradient at u to g [N] and returns the energy [J].
     double add_gradient(const Vec3& u, Vec3& g) const;
 
-    /// Positive semi-definite.   [N/m]
-    Mat3 hessian(const Vec3& u) const;
+    /// Keeps a positive semi-definite Hessian at u for Newton's method: primal and dual, as [CGM99] minimise total variation.
+    ///
+    /// The energy's own Hessian has nothing along the slip where it slides, and mu N / e where it holds: from the one side
+    /// of u = origin Newton's step goes far beyond on the other, and the line search is left to find the way. Here
+    /// friction's direction w, |w| <= 1, is an unknown by itself with  max(e, |u_t|) w = u_t  linearised too, and
+    ///
+    ///   H = mu N / |u_t| (P - (w u_tᵀ + u_t wᵀ) / (2 |u_t|))
+    ///
+    /// is the energy's own once w is u_t / |u_t|. At first, w = 0, it bounds the energy from above.
+    void linearize(const Vec3& u);
+
+    const Mat3& hessian() const { return hessian_; }  // [N/m]
+
+  private:
+    Mat3 hessian_ = Mat3::Zero();
+    Vec3 slip_{0, 0, 0},
+        direction_{0, 0, 0};  // u_t and w of the last linearisation; before the first 0
 };
 
 }  // namespace sim

@@ -223,7 +223,7 @@ double SurfaceContact::add_gradient(const Field& x, Field& gradient) const {
 
 void SurfaceContact::linearize(const Field& x) {
     rows_.clear();
-    for (const Contact& contact : contacts_) {
+    for (Contact& contact : contacts_) {
         const Vec3 apart = contact.separation(x);
         const bool touches = contact.depth(apart) > 0;
         if (!touches && !contact.grip.holds())
@@ -231,8 +231,10 @@ void SurfaceContact::linearize(const Field& x) {
         Mat3 H = Mat3::Zero();
         if (touches)
             H += contact.stiffness * contact.normal * contact.normal.transpose();
-        if (contact.grip.holds())
-            H += contact.grip.hessian(apart);
+        if (contact.grip.holds()) {
+            contact.grip.linearize(apart);
+            H += contact.grip.hessian();
+        }
         rows_.push_back({&contact, H});
     }
 }

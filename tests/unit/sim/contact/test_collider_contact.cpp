@@ -175,6 +175,7 @@ TEST_CASE("the Hessian is the gradient's derivative on a plane, and positive eve
             const Vec3 x = start.x_n + slip * tests::random_vector(random).normalized();
             const Vec3 direction = tests::random_vector(random).normalized();
             contact.linearize({sim::padded(x)});
+            contact.linearize({sim::padded(x)});  // when friction knows its direction
             Field product(1);
             contact.add_product({sim::padded(direction)}, product);
             const Vec3 exact = sim::unpadded(product[0]);

@@ -3,6 +3,8 @@
 #include "tests/support/derivative_order.h"
 #include "tests/support/random_fields.h"
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -36,19 +38,23 @@ double energy(const Grip& grip, const Vec3& u) {
 
 TEST_CASE("a grip's gradient and Hessian are those of its energy, sticking and sliding") {
     tests::Random random(3);
-    const Grip of_pair = grip({false, mu});
     for (const double slip : {0.3 * slip_length, 4 * slip_length}) {
         Vec3 along = tests::random_vector(random);
         along = (along - normal * normal.dot(along)).normalized();
         const Vec3 u = origin + slip * along + 0.7 * slip * normal,
                    way = tests::random_vector(random).normalized();
+        Grip of_pair = grip({false, mu});
+        of_pair.linearize(u);
+        const Vec3 other = tests::random_vector(random);
+        CHECK(other.dot(of_pair.hessian() * other) >= 0);
+        of_pair.linearize(u);  // as its direction is known now
         const auto slope_error = [&](double h) {
             return (energy(of_pair, u + h * way) - energy(of_pair, u - h * way)) / (2 * h)
                    - gradient(of_pair, u).dot(way);
         };
         const auto curvature_error = [&](double h) {
             return ((gradient(of_pair, u + h * way) - gradient(of_pair, u - h * way)) / (2 * h)
-                    - of_pair.hessian(u) * way)
+                    - of_pair.hessian() * way)
                 .norm();
         };
         CAPTURE(slip);
@@ -60,8 +66,37 @@ TEST_CASE("a grip's gradient and Hessian are those of its energy, sticking and s
             CHECK(std::abs(slope_error(0.1 * slip_length)) < 1e-9 * mu * stiffness * depth);
             CHECK(curvature_error(0.1 * slip_length) < 1e-9 * of_pair.stiffness);
         }
-        const Vec3 other = tests::random_vector(random);
-        CHECK(other.dot(of_pair.hessian(u) * other) >= 0);
+        CHECK(other.dot(of_pair.hessian() * other) >= 0);
+    }
+}
+
+TEST_CASE("Newton's method finds where friction lets a mass come to, by whole steps") {
+    // Of m/2 |u - a|² + mu N D(|u_t|): in the plane a, shortened by mu N / m, or to a / (1 + mu N / (m e)) where it holds.
+    tests::Random random(9);
+    const double force = mu * stiffness * depth;
+    for (int k = 0; k < 200; ++k) {
+        const double m = std::pow(10.0, tests::between(random, 1, 5)),  // of dt² [kg/s²]
+            pull = std::pow(10.0, tests::between(random, -1, 1));       // of mu N
+        Vec3 along = tests::random_vector(random);
+        along = (along - normal * normal.dot(along)).normalized();
+        const Vec3 a = origin + pull * force / m * along;
+        const double holding = 1 + force / (m * slip_length),
+                     slides = pull * force / m - force / m;
+        const Vec3 expected =
+            origin + along * (slides > slip_length ? slides : pull * force / m / holding);
+        Grip of_pair = grip({false, mu});
+        const Vec3 side = normal.cross(along);
+        Vec3 u = a + 0.5 * (a - origin).norm() * side;  // a guess from aside
+        int iterations = 0;
+        const auto residual = [&] { return Vec3(m * (u - a) + gradient(of_pair, u)); };
+        for (; iterations < 50 && residual().norm() > 1e-6 * force; ++iterations) {
+            of_pair.linearize(u);
+            const Mat3 H = m * Mat3::Identity() + of_pair.hessian();
+            u -= H.inverse() * residual();
+        }
+        CAPTURE(m, pull, iterations);
+        CHECK((u - expected).norm() < 2e-6 * force / m);
+        CHECK(iterations <= 12);
     }
 }
 
