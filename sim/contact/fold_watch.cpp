@@ -2,74 +2,38 @@
 
 #include "sim/base/parallel.h"
 #include "sim/contact/contact_search.h"
-#include "sim/contact/point_grid.h"
-#include "sim/embedding/trilinear.h"
+#include "sim/contact/domain_hull.h"
 #include "sim/materials/signed_svd.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 namespace sim {
 
 namespace {
 
-constexpr int vertex_chunk = 256;
-constexpr double continued = 0.25;  // of domains beyond themselves, in domain edges
-constexpr double watched = 0.75;    // that distances are looked at up to, in domain edges
-constexpr double rounding = 1e-9;   // of distances, in domain edges
-constexpr int n_directions = 13;
+constexpr int vertex_block = 3, domain_block = 4;  // edges of blocks, in domain edges
+constexpr double watched = 0.9;    // gaps of vertices that are kept, in domain edges
+constexpr double far = 4;          // gaps of blocks that are kept, in domain edges
+constexpr double rounding = 1e-9;  // of distances, in domain edges
 
-double squared_norm(const Vec3p& x) {
-    return dot(x, x);
+template <class Points>
+PaddedBounds bounds_of(const Points& points) {
+    PaddedBounds bounds;
+    for (const Vec3p& x : points)
+        bounds.add(x);
+    return bounds;
 }
 
-/// Axes, and diagonals of the faces and of the cube.
-const std::array<Vec3, n_directions> directions = [] {
-    std::array<Vec3, n_directions> made;
-    for (int n = 0; n < n_directions; ++n) {
-        const int code = n + 14;  // one half of the 26 neighbours of a cell
-        made[n] = Vec3(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1).normalized();
-    }
-    return made;
-}();
+using Blocks = std::map<std::array<int, 3>, std::vector<int>>;
 
-/// A continued domain from outside: its extent in each direction, and a ball.
-struct Hull {
-    Vec3 centre{0, 0, 0}, rest_centre{0, 0, 0};
-    double radius = 0;
-    std::array<double, n_directions> low{}, high{};
-
-    Hull(const std::array<Vec3, 8>& corners, const Vec3& at_rest) : rest_centre(at_rest) {
-        for (const Vec3& x : corners)
-            centre += x / 8;
-        low.fill(std::numeric_limits<double>::infinity());
-        high.fill(-std::numeric_limits<double>::infinity());
-        constexpr double end = 1 + continued;
-        for (int a = 0; a < 8; ++a) {
-            const auto w = trilinear_weights(
-                {a & 1 ? end : -continued, a & 2 ? end : -continued, a & 4 ? end : -continued});
-            Vec3 x = Vec3::Zero();
-            for (int b = 0; b < 8; ++b)
-                x += w[b] * corners[b];
-            radius = std::max(radius, (x - centre).norm());
-            for (int k = 0; k < n_directions; ++k) {
-                const double along = directions[k].dot(x);
-                low[k] = std::min(low[k], along);
-                high[k] = std::max(high[k], along);
-            }
-        }
-    }
-
-    /// At most the distance of x; not above zero only where neither the ball nor any direction parts them.   [m]
-    double distance(const Vec3& x) const {
-        double most = (x - centre).norm() - radius;
-        for (int k = 0; k < n_directions; ++k) {
-            const double along = directions[k].dot(x);
-            most = std::max({most, along - high[k], low[k] - along});
-        }
-        return most;
-    }
-};
+std::array<int, 3> block_of(std::array<int, 3> cell, int edge) {
+    for (int& index : cell)
+        index = static_cast<int>(std::floor(double(index) / edge));
+    return cell;
+}
 
 }  // namespace
 
@@ -101,65 +65,174 @@ struct FoldWatch::OwnFrame {
         return from_centre[0] * column[0] + from_centre[1] * column[1]
                + from_centre[2] * column[2];
     }
-
-    Vec3 seen(const Vec3& x) const { return unpadded(seen(padded(x))); }
-
-    std::array<Vec3, 8> seen(std::array<Vec3, 8> corners) const {
-        for (Vec3& x : corners)
-            x = seen(x);
-        return corners;
-    }
 };
 
 FoldWatch::FoldWatch(const ContactSurface& surface) : surface_(&surface) {
-    for (const ContactVertex& vertex : surface.vertices) {
+    const Lattice& lattice = *surface.lattice;
+    Blocks vertices, domains;
+    for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
+        const ContactVertex& vertex = surface.vertices[v];
         double sum = 0;
         for (const double w : vertex.weights)
             sum += std::abs(w);
         of_vertex_ = std::max(of_vertex_, sum);
+        const int lowest = vertex.corners[0] - surface.begin;
+        vertices[block_of(lattice.corner_cell[lowest], vertex_block)].push_back(int(v));
     }
+    for (const int p : surface.shell)
+        domains[block_of(lattice.cell[p], domain_block)].push_back(p);
+    for (auto& [cell, block] : vertices)
+        vertex_blocks_.push_back(std::move(block));
+    for (auto& [cell, block] : domains)
+        domain_blocks_.push_back(std::move(block));
+    for (const std::vector<int>& block : vertex_blocks_)
+        carriers_.push_back(carriers_of(block));
+
     Vec3 rest_centre = Vec3::Zero();
-    for (const Vec3& X : surface.lattice->corner_rest)
-        rest_centre += X / surface.lattice->n_corners();
-    for (const Vec3& X : surface.lattice->corner_rest)
+    for (const Vec3& X : lattice.corner_rest)
+        rest_centre += X / lattice.n_corners();
+    for (const Vec3& X : lattice.corner_rest)
         from_rest_centre_.push_back(padded(X - rest_centre));
 }
 
-void FoldWatch::see(const Field& x, const OwnFrame& frame) {
-    seen_.resize(surface_->lattice->n_corners());
-    for (std::size_t c = 0; c < seen_.size(); ++c)
-        seen_[c] = frame.seen(x[surface_->begin + c]);
+std::vector<int> FoldWatch::carriers_of(const std::vector<int>& vertices) const {
+    std::vector<int> corners;
+    for (const int v : vertices)
+        for (const int c : surface_->vertices[v].corners)
+            corners.push_back(c - surface_->begin);
+    std::sort(corners.begin(), corners.end());
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+    return corners;
 }
 
-double FoldWatch::most_change(double enough) const {
-    if (looked_at_.empty())
-        return std::numeric_limits<double>::infinity();
-    double squared = 0;
-    for (std::size_t c = 0; c < seen_.size(); ++c)
-        squared = std::max(squared, squared_norm(seen_[c] - looked_at_[c]));
-    // A vertex moves with its corners, a domain with its centre and, seen from there, a continued corner by up to the sum
-    // of its weights times what its corners do.
-    const double moved = std::sqrt(squared), of_centres = (of_vertex_ + 1) * moved,
-                 of_continued = std::pow(1 + 2 * continued, 3);
-    if (of_centres + of_continued * 2 * moved < enough)
-        return of_centres + of_continued * 2 * moved;
-    return of_centres + of_continued * most_strained();
-}
-
-double FoldWatch::most_strained() const {
-    double squared = 0;
-    for (const int p : surface_->shell) {
-        std::array<Vec3p, 8> moved;
-        Vec3p sum{};
-        for (int a = 0; a < 8; ++a) {
-            const int c = surface_->lattice->corners[p][a];
-            moved[a] = seen_[c] - looked_at_[c];
-            sum += moved[a];
-        }
-        for (int a = 0; a < 8; ++a)
-            squared = std::max(squared, squared_norm(moved[a] - sum / 8.0));
+void FoldWatch::see(const Field& x) {
+    const OwnFrame frame(x, surface_->begin, from_rest_centre_);
+    const bool is_first = seen_.empty();
+    seen_.resize(from_rest_centre_.size());
+    moved_.resize(seen_.size());
+    for (std::size_t c = 0; c < seen_.size(); ++c) {
+        const Vec3p at = frame.seen(x[surface_->begin + c]);
+        moved_[c] = at - seen_[c];
+        seen_[c] = at;
     }
-    return std::sqrt(squared);
+    if (!is_first)
+        follow();
+    if (is_first || !(unlisted_change_ < far * surface_->lattice->edge))
+        list_pairs();
+}
+
+Vec3p FoldWatch::at_vertex(int v, const Field& values) const {
+    const ContactVertex& vertex = surface_->vertices[v];
+    Vec3p sum{};
+    for (int a = 0; a < 8; ++a)
+        sum += vertex.weights[a] * values[vertex.corners[a] - surface_->begin];
+    return sum;
+}
+
+std::array<Vec3p, 8> FoldWatch::at_continued(int p, const Field& values) const {
+    std::array<Vec3p, 8> corners;
+    for (int a = 0; a < 8; ++a)
+        corners[a] = values[surface_->lattice->corners[p][a]];
+    go_beyond(corners);
+    return corners;
+}
+
+PaddedBounds FoldWatch::of_continued(const std::vector<int>& domains,
+                                     const Field& values) const {
+    PaddedBounds bounds;
+    for (const int p : domains)
+        for (const Vec3p& value : at_continued(p, values))
+            bounds.add(value);
+    return bounds;
+}
+
+void FoldWatch::follow() {
+    std::vector<PaddedBounds> of_vertices(vertex_blocks_.size()),
+        of_domains(domain_blocks_.size());
+    PaddedBounds all;
+    for (std::size_t a = 0; a < of_vertices.size(); ++a) {
+        for (const int c : carriers_[a])
+            of_vertices[a].add(moved_[c]);
+        all.add(of_vertices[a]);
+    }
+    for_chunks(static_cast<int>(of_domains.size()), 4, [&](int begin, int end) {
+        for (int b = begin; b < end; ++b)
+            of_domains[b] = of_continued(domain_blocks_[b], moved_);
+    });
+    for (const PaddedBounds& bounds : of_domains)
+        all.add(bounds);
+    // A hull ends at corners of continued domains; a vertex moves, seen from one of them, with corners around it.
+    const double rounded = rounding * surface_->lattice->edge;
+    unlisted_change_ += of_vertex_ * all.farthest(all) + rounded;
+    for (BlockPair& pair : pairs_)
+        pair.change +=
+            of_vertex_ * of_vertices[pair.of_vertices].farthest(of_domains[pair.of_domains])
+            + rounded;
+}
+
+void FoldWatch::list_pairs() {
+    std::vector<PaddedBounds> of_vertices, of_domains;
+    for (const std::vector<int>& block : vertex_blocks_) {
+        PaddedBounds& bounds = of_vertices.emplace_back();
+        for (const int v : block)
+            bounds.add(at_vertex(v, seen_));
+    }
+    for (const std::vector<int>& block : domain_blocks_)
+        of_domains.push_back(of_continued(block, seen_));
+    // Both lists are in the same order; what is known of a pair stays.
+    std::vector<BlockPair> pairs;
+    auto old = pairs_.begin();
+    for (int b = 0; b < static_cast<int>(of_domains.size()); ++b)
+        for (int a = 0; a < static_cast<int>(of_vertices.size()); ++a) {
+            const bool is_known =
+                old != pairs_.end() && old->of_domains == b && old->of_vertices == a;
+            const double gap = of_vertices[a].gap(of_domains[b]);
+            if (gap < far * surface_->lattice->edge)
+                pairs.push_back(is_known ? std::move(*old) : BlockPair{a, b, {}, gap});
+            old += is_known;
+        }
+    pairs_ = std::move(pairs);
+    unlisted_change_ = 0;
+}
+
+void FoldWatch::look_at(const std::vector<BlockPair*>& pairs) const {
+    const double edge = surface_->lattice->edge, stranger = neighbourhood * edge;
+    const std::vector<int>& domains = domain_blocks_[pairs.front()->of_domains];
+    std::vector<std::array<Vec3p, 8>> corners;
+    std::vector<PaddedBounds> bounds;
+    PaddedBounds all;
+    for (const int p : domains) {
+        corners.push_back(at_continued(p, seen_));
+        bounds.push_back(bounds_of(corners.back()));
+        all.add(bounds.back());
+    }
+    Field vertices;
+    for (BlockPair* pair : pairs) {
+        const std::vector<int>& block = vertex_blocks_[pair->of_vertices];
+        vertices.clear();
+        for (const int v : block)
+            vertices.push_back(at_vertex(v, seen_));
+        const PaddedBounds around = bounds_of(vertices);
+        *pair = {
+            pair->of_vertices, pair->of_domains, {}, std::max(watched * edge, all.gap(around))};
+        for (std::size_t d = 0; d < domains.size(); ++d) {
+            if (bounds[d].gap(around) >= pair->apart)
+                continue;
+            const Vec3 rest_centre = surface_->domain_centre(domains[d]);
+            std::optional<Hull> hull;
+            for (std::size_t k = 0; k < block.size(); ++k) {
+                if (bounds[d].gap({vertices[k], vertices[k]}) >= pair->apart
+                    || (surface_->vertices[block[k]].rest - rest_centre).squaredNorm()
+                           < stranger * stranger)
+                    continue;
+                if (!hull)
+                    hull.emplace(corners[d]);
+                const double gap = hull->gap(vertices[k]);
+                if (gap < pair->apart)
+                    pair->near.push_back({block[k], domains[d], gap});
+            }
+        }
+    }
 }
 
 const std::vector<int>& FoldWatch::strangers(const Field& x) {
@@ -177,64 +250,26 @@ const std::vector<int>& FoldWatch::strangers(const Field& x) {
 }
 
 std::vector<int> FoldWatch::find_strangers(const Field& x) {
-    const double edge = surface_->lattice->edge;
-    const OwnFrame frame(x, surface_->begin, from_rest_centre_);
-    see(x, frame);
-    double change = most_change(watched * edge) + rounding * edge;
-    if (!(change < watched * edge)) {
-        near_ = look_around(frame, x);
-        looked_at_ = seen_;
-        change = rounding * edge;
-    }
-    std::vector<int> found;
-    for (const Near& near : near_) {
-        if (near.distance > change || (!found.empty() && found.back() == near.vertex))
+    see(x);
+    std::vector<std::vector<BlockPair*>> used_up;  // by their domains
+    for (BlockPair& pair : pairs_) {
+        if (pair.change < pair.apart)
             continue;
-        const Hull hull(frame.seen(surface_->domain_corners(near.domain, x)), Vec3::Zero());
-        if (hull.distance(frame.seen(surface_->vertices[near.vertex].position(x))) <= 0)
-            found.push_back(near.vertex);
+        if (used_up.empty() || used_up.back().front()->of_domains != pair.of_domains)
+            used_up.emplace_back();
+        used_up.back().push_back(&pair);
     }
+    for_chunks(
+        static_cast<int>(used_up.size()), 1, [&](int k, int /*end*/) { look_at(used_up[k]); });
+    std::vector<int> found;
+    for (const BlockPair& pair : pairs_)
+        for (const Near& near : pair.near)
+            if (near.gap <= pair.change
+                && Hull(at_continued(near.domain, seen_)).holds(at_vertex(near.vertex, seen_)))
+                found.push_back(near.vertex);
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
     return found;
-}
-
-std::vector<FoldWatch::Near> FoldWatch::look_around(const OwnFrame& frame,
-                                                    const Field& x) const {
-    const double edge = surface_->lattice->edge, stranger = neighbourhood * edge;
-    std::vector<Hull> hulls;
-    std::vector<Vec3> centres;
-    Field balls;  // around hulls and what is watched of their surroundings: centre, radius²
-    double largest = 0;
-    for (const int p : surface_->shell) {
-        const Hull& hull = hulls.emplace_back(frame.seen(surface_->domain_corners(p, x)),
-                                              surface_->domain_centre(p));
-        const double reach = hull.radius + watched * edge;
-        centres.push_back(hull.centre);
-        balls.push_back(padded(hull.centre) + Vec3p{0, 0, 0, reach * reach});
-        largest = std::max(largest, reach);
-    }
-    const PointGrid grid(centres, largest);
-    const int n = static_cast<int>(surface_->vertices.size());
-    std::vector<std::vector<Near>> parts((n + vertex_chunk - 1) / vertex_chunk);
-    for_chunks(n, vertex_chunk, [&](int begin, int end) {
-        for (int v = begin; v < end; ++v) {
-            const Vec3 at = frame.seen(surface_->vertices[v].position(x)),
-                       rest = surface_->vertices[v].rest;
-            const Vec3p at_padded = padded(at);
-            grid.near(at, [&](int i) {
-                const Vec3p apart = at_padded - balls[i];
-                if (dot(apart, apart) >= balls[i][3]
-                    || (hulls[i].rest_centre - rest).squaredNorm() < stranger * stranger)
-                    return;
-                const double distance = hulls[i].distance(at);
-                if (distance < watched * edge)
-                    parts[begin / vertex_chunk].push_back({v, surface_->shell[i], distance});
-            });
-        }
-    });
-    std::vector<Near> result;
-    for (const std::vector<Near>& part : parts)
-        result.insert(result.end(), part.begin(), part.end());
-    return result;
 }
 
 }  // namespace sim

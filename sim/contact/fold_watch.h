@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/contact/contact_surface.h"
+#include "sim/contact/domain_hull.h"
 
 #include <vector>
 
@@ -11,7 +12,9 @@ namespace sim {
 /// of a domain beyond it. However flat a domain is pressed, it reaches no further: layers that lie close to each other
 /// because what is between them is thin do not count.
 ///
-/// The answer depends on x alone; that of earlier calls only saves work.
+/// The answer depends on x alone; what earlier calls have found only saves work. Blocks of domains are followed: the
+/// distances of one block's vertices from the domains of another are looked at again when the two may have neared each
+/// other by what was between them. Neighbours move with each other, so that most of it lasts long.
 class FoldWatch {
   public:
     explicit FoldWatch(const ContactSurface& surface);
@@ -20,28 +23,41 @@ class FoldWatch {
     const std::vector<int>& strangers(const Field& x);
 
   private:
-    /// A vertex that was near a stranger when all distances were looked at.
+    /// A vertex that was near a stranger when its gap (Hull::gap) was looked at.
     struct Near {
         int vertex = 0, domain = 0;
-        double distance = 0;  // then, less than `watched` [m]
+        double gap = 0;  // then [m]
+    };
+
+    /// The vertices of one block and the domains of another.
+    struct BlockPair {
+        int of_vertices = 0, of_domains = 0;
+        std::vector<Near> near = {};
+        double apart = 0;   // least gap of all that is not `near`, when it was looked at [m]
+        double change = 0;  // of gaps since, at most [m]
     };
 
     struct OwnFrame;
     std::vector<int> find_strangers(const Field& x);
-    void see(const Field& x, const OwnFrame& frame);
-    /// Of a distance since all were looked at, at most; found with less effort where it is below `enough`.   [m]
-    double most_change(double enough) const;
-    double most_strained() const;  // of corners, seen from the centres of their domains [m]
-    std::vector<Near> look_around(const OwnFrame& frame, const Field& x) const;
+    void see(const Field& x);
+    void follow();
+    void list_pairs();
+    void look_at(const std::vector<BlockPair*>& pairs) const;  // of the same domains
+    std::vector<int> carriers_of(const std::vector<int>& vertices) const;
+    Vec3p at_vertex(int v, const Field& values) const;  // of values at corners
+    std::array<Vec3p, 8> at_continued(int p, const Field& values) const;
+    PaddedBounds of_continued(const std::vector<int>& domains, const Field& values) const;
 
     const ContactSurface* surface_;
     double of_vertex_ = 1;  // the most that one moves, when its corners move by 1
-    Field seen_,
-        looked_at_;  // (#corners) now, and when all distances were looked at, or empty [m]
-    std::vector<Near> near_;  // by vertex
-    Field from_rest_centre_;  // (#corners) [m]
-    Field asked_;             // (#corners) the last x [m]
-    std::vector<int> found_;  // the answer
+    std::vector<std::vector<int>> vertex_blocks_, domain_blocks_;  // of neighbours at rest
+    std::vector<std::vector<int>> carriers_;  // (#vertex blocks) corners that carry them
+    Field from_rest_centre_;                  // (#corners) [m]
+    Field seen_, moved_;  // (#corners) in the body's own frame, and since the last call [m]
+    std::vector<BlockPair> pairs_;  // not far from each other, by domains, then vertices
+    double unlisted_change_ = 0;    // of gaps of all others since pairs were listed [m]
+    Field asked_;                   // (#corners) the last x [m]
+    std::vector<int> found_;        // the answer
 };
 
 }  // namespace sim

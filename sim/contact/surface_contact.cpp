@@ -270,7 +270,8 @@ SurfaceContact::Report SurfaceContact::report(const Field& x) const {
         const double margin = reach * b.lattice->edge;
         std::vector<int> vertices;
         if (pair.is_self())
-            vertices = FoldWatch(a).strangers(x);
+            vertices = FoldWatch(folds_[pair.of_domains])
+                           .strangers(x);  // a copy, as steps go on with theirs
         else if (distance(pair, all) <= margin)
             vertices = a.all_vertices();
         for (const ContactPoint& contact : find_contacts(a, vertices, b, x, x, margin)) {

@@ -154,6 +154,67 @@ TEST_CASE("a folded strip meets itself along its inner sides alone") {
     CHECK(has_met);
 }
 
+TEST_CASE("a strip that curls up meets its other end, far from it at first") {
+    const int n = 30;
+    const Block strip({n, 2, 1});
+    sim::FoldWatch watch(strip.surface);
+    bool has_met = false;
+    int step = 0;
+    for (double angle = 0.5; angle < 2 * std::numbers::pi + 0.8; angle += 0.05, ++step) {
+        // It sways as well, so that all its blocks move, each in its own way.
+        const double radius = n * edge / angle, sway = 0.1 * edge * std::sin(step);
+        const Field x = strip.moved([&](const Vec3& X) -> Vec3 {
+            const double at = X.x() / radius, out = radius - X.z();
+            return {out * std::sin(at), X.y() + sway * std::sin(3 * at), -out * std::cos(at)};
+        });
+        const std::vector<int> strangers = watch.strangers(x);
+        CAPTURE(angle);
+        CHECK(strangers == sim::FoldWatch(strip.surface).strangers(x));
+        if (angle < 1.7 * std::numbers::pi)
+            CHECK(strangers.empty());
+        if (step % 4 == 0) {
+            const std::vector<int> expected = strangers_by_brute_force(strip.surface, x);
+            CHECK(std::includes(
+                strangers.begin(), strangers.end(), expected.begin(), expected.end()));
+            has_met |= expected.size() > 50;
+        }
+    }
+    CHECK(has_met);
+}
+
+TEST_CASE("a flap that folds over a body that swings is seen when it comes near") {
+    // The body is stretched and pressed in small steps, its outer part turns over, into its own upper side.
+    const Block block({12, 8, 3});
+    sim::FoldWatch watch(block.surface);
+    const double hinge = 5 * edge, bent = 2 * edge;
+    std::size_t n_found = 0;
+    for (int k = 1; k <= 121; ++k) {
+        // Its upper side keeps its length.
+        const double stretch = 1 + 0.3 * std::sin(0.15 * k), angle = 0.031 * k,
+                     above = 3 * edge + bent / angle;
+        const Field x = block.moved([&](const Vec3& X) -> Vec3 {
+            const double along = X.x() - hinge, y = X.y() * stretch, down = above - X.z();
+            if (along < 0)
+                return {X.x(), y, X.z()};
+            const double turned = std::min(along / bent, 1.0) * angle,
+                         beyond = std::max(along - bent, 0.0);
+            return {hinge + down * std::sin(turned) + beyond * std::cos(turned),
+                    y,
+                    above - down * std::cos(turned) + beyond * std::sin(turned)};
+        });
+        const std::vector<int> strangers = watch.strangers(x);
+        CAPTURE(k);
+        CHECK(strangers == sim::FoldWatch(block.surface).strangers(x));
+        if (k % 12 == 1) {
+            const std::vector<int> expected = strangers_by_brute_force(block.surface, x);
+            CHECK(std::includes(
+                strangers.begin(), strangers.end(), expected.begin(), expected.end()));
+            n_found += expected.size();
+        }
+    }
+    CHECK(n_found > 100);
+}
+
 TEST_CASE("a body that flies, turns, or is pressed flat is not folded") {
     const Block cube({8, 8, 8});
     sim::FoldWatch watch(cube.surface);
