@@ -15,9 +15,10 @@ namespace sim {
 namespace {
 
 constexpr int vertex_block = 3, domain_block = 4;  // edges of blocks, in domain edges
-constexpr double watched = 0.9;    // gaps of vertices that are kept, in domain edges
-constexpr double far = 4;          // gaps of blocks that are kept, in domain edges
-constexpr double rounding = 1e-9;  // of distances, in domain edges
+constexpr double watched = 0.9;     // gaps of vertices that are kept, in domain edges
+constexpr double far = 4;           // gaps of blocks that are kept, in domain edges
+constexpr double least_left = 0.2;  // of a gap before it is looked at again, in domain edges
+constexpr double rounding = 1e-9;   // of distances, in domain edges
 
 template <class Points>
 PaddedBounds bounds_of(const Points& points) {
@@ -105,20 +106,20 @@ std::vector<int> FoldWatch::carriers_of(const std::vector<int>& vertices) const 
     return corners;
 }
 
-void FoldWatch::see(const Field& x) {
+double FoldWatch::see(const Field& x) {
     const OwnFrame frame(x, surface_->begin, from_rest_centre_);
-    const bool is_first = seen_.empty();
     seen_.resize(from_rest_centre_.size());
     moved_.resize(seen_.size());
+    followed_.resize(seen_.size());
+    PaddedBounds all;
     for (std::size_t c = 0; c < seen_.size(); ++c) {
-        const Vec3p at = frame.seen(x[surface_->begin + c]);
-        moved_[c] = at - seen_[c];
-        seen_[c] = at;
+        seen_[c] = frame.seen(x[surface_->begin + c]);
+        moved_[c] = seen_[c] - followed_[c];
+        all.add(moved_[c]);
     }
-    if (!is_first)
-        follow();
-    if (is_first || !(unlisted_change_ < far * surface_->lattice->edge))
-        list_pairs();
+    const double of_continued = std::pow(1 + 2 * beyond_domain, 3);
+    return (of_vertex_ + of_continued) / 2 * all.farthest(all)
+           + rounding * surface_->lattice->edge;
 }
 
 Vec3p FoldWatch::at_vertex(int v, const Field& values) const {
@@ -147,6 +148,37 @@ PaddedBounds FoldWatch::of_continued(const std::vector<int>& domains,
 }
 
 void FoldWatch::follow() {
+    const double edge = surface_->lattice->edge;
+    if (pairs_.empty())
+        list_pairs();
+    else
+        add_changes();
+    if (!(unlisted_change_ < (far - least_left) * edge))
+        list_pairs();
+
+    std::vector<std::vector<BlockPair*>> used_up;  // by their domains
+    for (BlockPair& pair : pairs_) {
+        if (pair.change < pair.apart - least_left * edge)
+            continue;
+        if (used_up.empty() || used_up.back().front()->of_domains != pair.of_domains)
+            used_up.emplace_back();
+        used_up.back().push_back(&pair);
+    }
+    for_chunks(
+        static_cast<int>(used_up.size()), 1, [&](int k, int /*end*/) { look_at(used_up[k]); });
+
+    followed_ = seen_;
+    left_ = far * edge - unlisted_change_;
+    for (const BlockPair& pair : pairs_)
+        left_ = std::min(left_, pair.apart - pair.change);
+    nearest_.clear();
+    for (const BlockPair& pair : pairs_)
+        for (const Near& near : pair.near)
+            if (near.gap - pair.change <= left_)
+                nearest_.push_back({near.vertex, near.domain, near.gap - pair.change});
+}
+
+void FoldWatch::add_changes() {
     std::vector<PaddedBounds> of_vertices(vertex_blocks_.size()),
         of_domains(domain_blocks_.size());
     PaddedBounds all;
@@ -171,12 +203,10 @@ void FoldWatch::follow() {
 }
 
 void FoldWatch::list_pairs() {
-    std::vector<PaddedBounds> of_vertices, of_domains;
-    for (const std::vector<int>& block : vertex_blocks_) {
-        PaddedBounds& bounds = of_vertices.emplace_back();
-        for (const int v : block)
-            bounds.add(at_vertex(v, seen_));
-    }
+    std::vector<PaddedBounds> of_vertices(vertex_blocks_.size()), of_domains;
+    for (std::size_t a = 0; a < of_vertices.size(); ++a)
+        for (const int v : vertex_blocks_[a])
+            of_vertices[a].add(at_vertex(v, seen_));
     for (const std::vector<int>& block : domain_blocks_)
         of_domains.push_back(of_continued(block, seen_));
     // Both lists are in the same order; what is known of a pair stays.
@@ -250,23 +280,16 @@ const std::vector<int>& FoldWatch::strangers(const Field& x) {
 }
 
 std::vector<int> FoldWatch::find_strangers(const Field& x) {
-    see(x);
-    std::vector<std::vector<BlockPair*>> used_up;  // by their domains
-    for (BlockPair& pair : pairs_) {
-        if (pair.change < pair.apart)
-            continue;
-        if (used_up.empty() || used_up.back().front()->of_domains != pair.of_domains)
-            used_up.emplace_back();
-        used_up.back().push_back(&pair);
+    double change = see(x);
+    if (!(change < left_)) {
+        follow();
+        change = 0;
     }
-    for_chunks(
-        static_cast<int>(used_up.size()), 1, [&](int k, int /*end*/) { look_at(used_up[k]); });
     std::vector<int> found;
-    for (const BlockPair& pair : pairs_)
-        for (const Near& near : pair.near)
-            if (near.gap <= pair.change
-                && Hull(at_continued(near.domain, seen_)).holds(at_vertex(near.vertex, seen_)))
-                found.push_back(near.vertex);
+    for (const Near& near : nearest_)
+        if (near.gap <= change
+            && Hull(at_continued(near.domain, seen_)).holds(at_vertex(near.vertex, seen_)))
+            found.push_back(near.vertex);
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
     return found;

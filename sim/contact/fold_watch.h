@@ -14,7 +14,8 @@ namespace sim {
 ///
 /// The answer depends on x alone; what earlier calls have found only saves work. Blocks of domains are followed: the
 /// distances of one block's vertices from the domains of another are looked at again when the two may have neared each
-/// other by what was between them. Neighbours move with each other, so that most of it lasts long.
+/// other by what was between them. Neighbours move with each other, so that most of it lasts long; and while nothing has
+/// moved much, seen from the whole body, there is nothing to do.
 class FoldWatch {
   public:
     explicit FoldWatch(const ContactSurface& surface);
@@ -39,8 +40,10 @@ class FoldWatch {
 
     struct OwnFrame;
     std::vector<int> find_strangers(const Field& x);
-    void see(const Field& x);
+    double see(
+        const Field& x);  // returns by how much any gap has changed since follow(), at most [m]
     void follow();
+    void add_changes();
     void list_pairs();
     void look_at(const std::vector<BlockPair*>& pairs) const;  // of the same domains
     std::vector<int> carriers_of(const std::vector<int>& vertices) const;
@@ -53,7 +56,10 @@ class FoldWatch {
     std::vector<std::vector<int>> vertex_blocks_, domain_blocks_;  // of neighbours at rest
     std::vector<std::vector<int>> carriers_;  // (#vertex blocks) corners that carry them
     Field from_rest_centre_;                  // (#corners) [m]
-    Field seen_, moved_;  // (#corners) in the body's own frame, and since the last call [m]
+    // (#corners) in the body's own frame: now, when blocks were followed, and the difference [m]
+    Field seen_, followed_, moved_;
+    double left_ = 0;               // of gaps that are not in nearest_, then [m]
+    std::vector<Near> nearest_;     // with what was left of their gaps then
     std::vector<BlockPair> pairs_;  // not far from each other, by domains, then vertices
     double unlisted_change_ = 0;    // of gaps of all others since pairs were listed [m]
     Field asked_;                   // (#corners) the last x [m]
