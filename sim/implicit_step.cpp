@@ -59,10 +59,7 @@ bool Stepper::solve_step(const State& state, double dt, Scheme scheme) {
         options.line_search = false;
         options.tolerance = semi_implicit_forcing;
     }
-    const Field& u = map_.applied(q_, corner_);
-    x_end_.resize(state.x.size());
-    for (std::size_t c = 0; c < state.x.size(); ++c)
-        x_end_[c] = potential_.step().x_n[c] + dt_hat_ * u[c];
+    map_.move(potential_.step().x_n, dt_hat_, q_, x_end_);
     if (!surfaces_.empty())
         surfaces_.begin_step({state.x, state.v, state.top_speed, state.contacts}, x_end_, dt);
     if (!minimize_with_contact(options,

@@ -16,15 +16,6 @@ constexpr double rounding =
 
 }  // namespace
 
-void IncrementalPotential::update_positions(const Field& q) {
-    x_.resize(step_.x_n.size());
-    const Field& u = map_.applied(q, x_);
-    for_chunks(static_cast<int>(x_.size()), chunk, [&](int begin, int end) {
-        for (int c = begin; c < end; ++c)
-            x_[c] = step_.x_n[c] + step_.dt * u[c];
-    });
-}
-
 /// act(elasticity, first corner) for bodies of domains; zero in `sums` for points.
 template <class Act>
 void IncrementalPotential::for_elastic(Field& sums, const Act& act) {
@@ -45,7 +36,7 @@ double IncrementalPotential::elastic_gradient(const Field& x, Field& gradient) {
 }
 
 double IncrementalPotential::value_and_gradient(const Field& q, Field& gradient) {
-    update_positions(q);
+    map_.move(step_.x_n, step_.dt, q, x_);
     double value = elastic_gradient(x_, corner_gradient_);
     for (const ContactEnergy* contact : contacts_)
         value += contact->add_gradient(x_, corner_gradient_);
@@ -83,7 +74,6 @@ double IncrementalPotential::value_and_gradient(const Field& q, Field& gradient)
 }
 
 void IncrementalPotential::linearize(const Field& q, bool project) {
-    update_positions(q);
     const int n = static_cast<int>(q.size());
     corner_diagonal_.resize(x_.size());
     corner_product_.resize(x_.size());

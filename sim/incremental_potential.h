@@ -71,7 +71,6 @@ class IncrementalPotential : public Potential {
     const Field& inner_part() const { return inner_part_; }
 
   private:
-    void update_positions(const Field& q);
     template <class Act>
     void for_elastic(Field& sums, const Act& act);
 

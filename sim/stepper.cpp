@@ -131,13 +131,14 @@ void Stepper::transfer(const State& state, Scheme scheme) {
             std::find(free_.begin() + begin, free_.begin() + end, 0) != free_.begin() + end;
         rigid.push_back(any_slave ? rigid_motion(assembly_.mass, state.x, v_hat_, begin, end)
                                   : RigidMotion{});
-        for (int c = begin; c < end; ++c)
+        const bool is_split = any_slave && !is_affine;
+        for (int c = begin; c < end; ++c) {
             corner_[c] =
                 assembly_.mass[c] * v_hat_[c]
                 + Vec3p{0, 0, 0, assembly_.mass[c][0]};  // mass goes along in the fourth
-        if (any_slave && !is_affine)
-            for (int c = begin; c < end; ++c)
+            if (is_split)
                 corner_[c] -= assembly_.mass[c] * rigid.back().at(state.x[c]);
+        }
     }
     const Field& momentum = map_.applied_transposed(corner_, q_n_);
     if (is_affine && !map_.is_identity())
@@ -254,13 +255,13 @@ void Stepper::commit(State& state, double dt) {
     const Field& seen = map_.applied(q_n_, corner_);
     const double keep =
         scene_.solver.transfer == Transfer::Apic ? 0 : std::exp(-scene_.solver.pic_rate * dt);
-    for (std::size_t c = 0; c < state.v.size(); ++c)
-        state.v[c] = moved_[c] + (free_[c] ? Vec3p{} : keep * (v_hat_[c] - seen[c]));
     std::swap(state.x, x_end_);
     for (std::size_t b = 0; b < ranges_.size(); ++b) {
         double fastest = 0;
-        for (int c = ranges_[b].begin; c < ranges_[b].end; ++c)
+        for (int c = ranges_[b].begin; c < ranges_[b].end; ++c) {
+            state.v[c] = moved_[c] + (free_[c] ? Vec3p{} : keep * (v_hat_[c] - seen[c]));
             fastest = std::max(fastest, dot(state.v[c], state.v[c]));
+        }
         state.top_speed[b] =
             std::max(std::sqrt(fastest), std::exp(-forgetting * dt) * state.top_speed[b]);
     }

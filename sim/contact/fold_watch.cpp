@@ -265,21 +265,7 @@ void FoldWatch::look_at(const std::vector<BlockPair*>& pairs) const {
     }
 }
 
-const std::vector<int>& FoldWatch::strangers(const Field& x) {
-    // Steps ask twice for where the last one has ended.
-    const auto first = x.begin() + surface_->begin,
-               last = first + surface_->lattice->n_corners();
-    const auto is_same = [](const Vec3p& a, const Vec3p& b) {
-        return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-    };
-    if (!std::equal(asked_.begin(), asked_.end(), first, last, is_same)) {
-        asked_.assign(first, last);
-        found_ = find_strangers(x);
-    }
-    return found_;
-}
-
-std::vector<int> FoldWatch::find_strangers(const Field& x) {
+std::vector<int> FoldWatch::strangers(const Field& x) {
     double change = see(x);
     if (!(change < left_)) {
         follow();

@@ -21,7 +21,7 @@ class FoldWatch {
     explicit FoldWatch(const ContactSurface& surface);
 
     /// Ascending; none of a body that is not folded.
-    const std::vector<int>& strangers(const Field& x);
+    std::vector<int> strangers(const Field& x);
 
   private:
     /// A vertex that was near a stranger when its gap (Hull::gap) was looked at.
@@ -39,7 +39,6 @@ class FoldWatch {
     };
 
     struct OwnFrame;
-    std::vector<int> find_strangers(const Field& x);
     double see(
         const Field& x);  // returns by how much any gap has changed since follow(), at most [m]
     void follow();
@@ -62,8 +61,6 @@ class FoldWatch {
     std::vector<Near> nearest_;     // with what was left of their gaps then
     std::vector<BlockPair> pairs_;  // not far from each other, by domains, then vertices
     double unlisted_change_ = 0;    // of gaps of all others since pairs were listed [m]
-    Field asked_;                   // (#corners) the last x [m]
-    std::vector<int> found_;        // the answer
 };
 
 }  // namespace sim

@@ -84,9 +84,13 @@ template <int n>
 
 }  // namespace
 
-void CornerMap::apply(const Field& q, Field& u) const {
-    for (int k = 0; k < n_free(); ++k)
-        u[free_corner_[k]] = q[k];
+/// write(corner, its entry of T q).
+template <class Write>
+void CornerMap::visit_corners(const Field& q, const Write& write) const {
+    for_chunks(n_free(), node_chunk, [&](int begin, int end) {
+        for (int k = begin; k < end; ++k)
+            write(free_corner_[k], q[k]);
+    });
     for (const Part& part : parts_)
         visit_spline(part.kernel, [&]<class S>(S) {
             constexpr int n = S::n, per_group = n * n * n;
@@ -100,8 +104,9 @@ void CornerMap::apply(const Field& q, Field& u) const {
                             v[a] = q[nodes[a]];
                         for (int s = group.begin; s < group.end; ++s) {
                             if constexpr (n == 2) {
-                                u[slave_corner_[s]] = trilinear_sum(
-                                    trilinear_weights_[part.first_trilinear + s], v);
+                                write(slave_corner_[s],
+                                      trilinear_sum(
+                                          trilinear_weights_[part.first_trilinear + s], v));
                                 continue;
                             }
                             Vec3p w[n], sum{};
@@ -112,11 +117,20 @@ void CornerMap::apply(const Field& q, Field& u) const {
                                 for (int b = 0; b < n; ++b)
                                     sum += (w[b][1] * w[c][2])
                                            * row_sum<n>(w, v + n * (n * c + b));
-                            u[slave_corner_[s]] = sum;
+                            write(slave_corner_[s], sum);
                         }
                     }
                 });
         });
+}
+
+void CornerMap::apply(const Field& q, Field& u) const {
+    visit_corners(q, [&](int c, const Vec3p& v) { u[c] = v; });
+}
+
+void CornerMap::move(const Field& x_n, double dt, const Field& q, Field& x) const {
+    x.resize(x_n.size());
+    visit_corners(q, [&](int c, const Vec3p& v) { x[c] = x_n[c] + dt * v; });
 }
 
 void CornerMap::find_row(int corner, std::vector<Weight>& row) const {

@@ -58,6 +58,9 @@ class CornerMap {
     /// u = T q.   q (#dofs), u (#C)
     void apply(const Field& q, Field& u) const;
 
+    /// x = x_n + dt T q.   x_n, x (#C), q (#dofs)
+    void move(const Field& x_n, double dt, const Field& q, Field& x) const;
+
     /// q = Tᵀ f.   f (#C), q (#dofs)
     void apply_transposed(const Field& f, Field& q) const;
 
@@ -132,6 +135,8 @@ class CornerMap {
     void keep_trilinear_weights(Part& part);
 
     // corner_map.cpp
+    template <class Write>
+    void visit_corners(const Field& q, const Write& write) const;
     template <class S, bool squared>
     void gather(const Part& part, const Field& f, Field& q) const;
     template <bool squared>

@@ -13,7 +13,8 @@ class Potential {
     /// Sets `gradient` to ∂W/∂q and returns W; +infinity where q is not allowed (the gradient is then undefined).
     virtual double value_and_gradient(const Field& q, Field& gradient) = 0;
 
-    /// Keeps the Hessian at q for hessian_product() and inverse_diagonal(); `project`: made positive semi-definite.
+    /// Keeps the Hessian at q, that of the last value_and_gradient(), for hessian_product() and inverse_diagonal();
+    /// `project`: made positive semi-definite.
     virtual void linearize(const Field& q, bool project) = 0;
 
     /// product = A p; returns pᵀ A p.

@@ -156,6 +156,24 @@ TEST_CASE("T reproduces affine fields") {
     }
 }
 
+TEST_CASE("corners move by what T gives them, wherever they come from") {
+    tests::Random random(5);
+    const double dt = 0.25;
+    for (const Vec3& offset : offsets) {
+        CAPTURE(offset.transpose());
+        const Sample s = sample(offset);
+        Field q(s.map.n_dofs()), u(s.n_corners()), x;
+        for (Vec3p& value : q)
+            value = sim::padded(tests::random_vector(random));
+        s.map.apply(q, u);
+        s.map.move(s.corners, dt, q, x);
+        REQUIRE(x.size() == s.corners.size());
+        for (int c = 0; c < s.n_corners(); ++c)
+            REQUIRE(sim::unpadded(x[c] - (s.corners[c] + dt * u[c])).norm()
+                    <= 1e-15 * (2 + offset.norm()));
+    }
+}
+
 TEST_CASE("the gathers are the transposes of T and of its squares") {
     tests::Random random(11);
     const Sample s = sample(offsets[1]);
