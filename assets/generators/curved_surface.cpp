@@ -1,6 +1,6 @@
 #include "assets/base/error.h"
+#include "assets/generators/cell_vertex.h"
 #include "assets/generators/procedural_surface.h"
-#include "assets/generators/surface_point.h"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/SignedFloodFill.h>
@@ -98,8 +98,8 @@ TriangleMesh curved_surface(const Shape& shape, double spacing) {
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t v) {
         const Vec3 voxels(points[v].x(), points[v].y(), points[v].z()),
             cell = voxels.array().floor();
-        const SurfacePoint found =
-            surface_point(shape, low + spacing * cell, spacing, low + spacing * voxels);
+        const CellVertex found =
+            cell_vertex(shape, low + spacing * cell, spacing, low + spacing * voxels);
         mesh.positions[v] = found.position;
         is_sharp[v] = found.is_sharp;
     });

@@ -110,12 +110,12 @@ void read_picture(TableReader& root,
 }
 
 std::filesystem::path read_output_folder(TableReader& root, const std::string& shot_name) {
-    constexpr std::string_view placeholder = "{shot}";
+    constexpr std::string_view shot_word = "{shot}";
     TableReader table = root.table("output");
     std::string path = table.text("path", "out/{shot}");
-    for (std::size_t at = 0; (at = path.find(placeholder, at)) != std::string::npos;
+    for (std::size_t at = 0; (at = path.find(shot_word, at)) != std::string::npos;
          at += shot_name.size())
-        path.replace(at, placeholder.size(), shot_name);
+        path.replace(at, shot_word.size(), shot_name);
     if (path.empty() || path.find_first_of("{}") != std::string::npos)
         table.error("path",
                     "'path' must be a folder, in which {shot} stands for the shot's name");

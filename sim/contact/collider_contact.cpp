@@ -226,18 +226,13 @@ void ColliderContact::add_diagonal(Field& diagonal) const {
         diagonal[block.corner] += padded(block.hessian.diagonal());
 }
 
-ColliderContact::Penetration ColliderContact::deepest_penetration(const Field& x,
-                                                                  double time) const {
-    return deepest_penetration(x, time, std::vector<char>(x.size(), 0));
-}
-
 ColliderContact::Penetration ColliderContact::deepest_penetration(
     const Field& x, double time, const std::vector<char>& held) const {
     Penetration deepest;
     for (std::size_t j = 0; j < colliders_.size(); ++j) {
         const Pose pose = colliders_[j].pose(time);
         for (const ContactCorner& corner : corners_) {
-            if (held[corner.corner])
+            if (!held.empty() && held[corner.corner])
                 continue;
             Vec3 normal;
             const double depth =

@@ -70,13 +70,10 @@ class ColliderContact : public ContactEnergy {
         int corner = -1, collider = -1;  // in the field of all corners, in the scene
     };
 
-    /// The deepest one at x and `time`, in domain edges.
-    Penetration deepest_penetration(const Field& x, double time) const;
-
-    /// The same of corners but those `held` (#C).
+    /// The deepest one at x and `time`, in domain edges, of corners but those `held` (#C, or none).
     Penetration deepest_penetration(const Field& x,
                                     double time,
-                                    const std::vector<char>& held) const;
+                                    const std::vector<char>& held = {}) const;
 
   private:
     struct Touch {

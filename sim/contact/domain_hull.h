@@ -1,7 +1,7 @@
 // Domains from outside: how far a point is from them at least.
 #pragma once
 
-#include "sim/base/field.h"
+#include "sim/contact/padded_bounds.h"
 
 #include <algorithm>
 #include <array>
@@ -9,44 +9,6 @@
 #include <limits>
 
 namespace sim {
-
-inline Vec3p smaller(const Vec3p& a, const Vec3p& b) {
-    return a < b ? a : b;
-}
-
-inline Vec3p larger(const Vec3p& a, const Vec3p& b) {
-    return a > b ? a : b;
-}
-
-inline double largest_entry(const Vec3p& a) {
-    return std::max({a[0], a[1], a[2]});
-}
-
-/// Along the axes; empty before the first point.
-struct PaddedBounds {
-    Vec3p low = Vec3p{} + std::numeric_limits<double>::infinity(), high = -low;
-
-    void add(const Vec3p& x) {
-        low = smaller(low, x);
-        high = larger(high, x);
-    }
-
-    /// Along the axis in which they are furthest apart; below zero where they overlap in all.
-    double gap(const PaddedBounds& other) const {
-        return largest_entry(larger(other.low - high, low - other.high));
-    }
-
-    void add(const PaddedBounds& other) {
-        low = smaller(low, other.low);
-        high = larger(high, other.high);
-    }
-
-    /// Of a point in these bounds from one in the others, at most.
-    double farthest(const PaddedBounds& other) const {
-        const Vec3p most = larger(high - other.low, other.high - low);
-        return std::sqrt(dot(most, most));
-    }
-};
 
 constexpr int n_hull_directions = 13;
 

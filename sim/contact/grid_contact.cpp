@@ -1,6 +1,7 @@
 #include "sim/contact/grid_contact.h"
 
 #include "sim/contact/node_box.h"
+#include "sim/contact/padded_bounds.h"
 #include "sim/grid/kernel.h"
 
 #include <algorithm>
@@ -19,10 +20,6 @@ constexpr double seen_cells =
 constexpr int n_normals = 3;  // of both bodies together, and of each
 constexpr double much_less = 2;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-struct Bounds {
-    Vec3p low{}, high{};
-};
 
 /// A corner's share of a node that both bodies share.
 struct Share {
@@ -45,32 +42,17 @@ struct Node {
     std::array<Vec3, 2> dv{Vec3::Zero(), Vec3::Zero()};
 };
 
-Bounds bounds_of(const ContactBody& body, const Field& x) {
-    Bounds bounds{x[body.begin], x[body.begin]};
-    for (int c = body.begin; c < body.end; ++c) {
-        bounds.low = x[c] < bounds.low ? x[c] : bounds.low;
-        bounds.high = x[c] > bounds.high ? x[c] : bounds.high;
-    }
+PaddedBounds bounds_of(const ContactBody& body, const Field& x) {
+    PaddedBounds bounds;
+    for (int c = body.begin; c < body.end; ++c)
+        bounds.add(x[c]);
     return bounds;
 }
 
 /// The part of space that holds both bodies, and all corners that a node which they share may see.
-Bounds common(const Bounds& a, const Bounds& b, double cell_size) {
+PaddedBounds common(const PaddedBounds& a, const PaddedBounds& b, double cell_size) {
     const double margin = seen_cells * cell_size;
-    return {(a.low > b.low ? a.low : b.low) - margin,
-            (a.high < b.high ? a.high : b.high) + margin};
-}
-
-bool is_nowhere(const Bounds& bounds) {
-    return bounds.low[0] > bounds.high[0] || bounds.low[1] > bounds.high[1]
-           || bounds.low[2] > bounds.high[2];
-}
-
-bool holds(const Bounds& bounds, const Vec3p& x) {
-    for (int k = 0; k < 3; ++k)
-        if (x[k] < bounds.low[k] || x[k] > bounds.high[k])
-            return false;
-    return true;
+    return {larger(a.low, b.low) - margin, smaller(a.high, b.high) + margin};
 }
 
 /// The lowest node of a stencil, and the distance from it in cells.
@@ -90,13 +72,13 @@ std::pair<std::array<long, 3>, Vec3p> place(const Vec3p& x, double h, double shi
 /// The nodes that two bodies share.
 class GridContact::Pair {
   public:
-    Pair(const GridPair& pair, const ContactFields& fields, const Bounds& where)
+    Pair(const GridPair& pair, const ContactFields& fields, const PaddedBounds& where)
         : fields_(fields), friction_(pair.friction) {
         std::array<std::vector<int>, 2> corners;
         for (int s = 0; s < 2; ++s) {
             const ContactBody& body = s == 0 ? pair.first : pair.second;
             for (int c = body.begin; c < body.end; ++c)
-                if (holds(where, fields.x[c]))
+                if (where.holds(fields.x[c]))
                     corners[s].push_back(c);
         }
         const double h = pair.cell_size;
@@ -268,10 +250,10 @@ class GridContact::Pair {
 GridContact::GridContact(const std::vector<GridPair>& pairs, const ContactFields& corners)
     : fields_(corners) {
     for (const GridPair& pair : pairs) {
-        const Bounds where = common(bounds_of(pair.first, corners.x),
-                                    bounds_of(pair.second, corners.x),
-                                    pair.cell_size);
-        if (is_nowhere(where))
+        const PaddedBounds where = common(bounds_of(pair.first, corners.x),
+                                          bounds_of(pair.second, corners.x),
+                                          pair.cell_size);
+        if (where.is_empty())
             continue;
         Pair made(pair, fields_, where);
         if (!made.is_empty())

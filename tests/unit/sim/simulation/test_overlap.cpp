@@ -1,32 +1,21 @@
 // Bodies that touch colliders, or lie in them, when a shot starts.
 #include "assets/base/error.h"
 #include "sim/simulation.h"
+#include "tests/support/soft_block.h"
 
 #include <catch2/catch.hpp>
 
 namespace {
 
-constexpr double frame_time = 1.0 / 24, edge = 0.1;
+constexpr double frame_time = 1.0 / 24, edge = 0.1, young_modulus = 1e5;
 
 /// A block on, or `depth` into, the ground, 4 x 4 domains wide and `height` high.
 sim::Scene block_on_ground(double height, double depth) {
-    sim::Body body;
-    body.name = "block";
-    body.domain_size = edge;
-    body.source.geometry =
-        assets::Shape{assets::Box{{-0.2, -0.2, -depth}, {0.2, 0.2, height - depth}}};
-    sim::Region region;
-    region.name = "all";
-    region.select.is = sim::Selector::All{};
-    region.model = sim::Model::StableNeoHookean;
-    region.young_modulus = 1e5;
-    region.poisson_ratio = 0.3;
-    region.density = 1000;
-    body.regions.push_back(region);
     sim::Scene scene;
     scene.solver.method = sim::Method::Fem;
     scene.solver.dt = 1e-3;
-    scene.bodies.push_back(body);
+    scene.bodies = {tests::soft_block(
+        "block", {-0.2, -0.2, -depth}, {0.4, 0.4, height}, edge, young_modulus)};
     scene.colliders.push_back({sim::PlaneShape{{0, 0, -1}, {0, 0, 1}}, {}});  // far below
     scene.colliders.push_back({sim::PlaneShape{{0, 0, 0}, {0, 0, 1}}, {}});
     return scene;
@@ -56,11 +45,7 @@ TEST_CASE("a body that starts inside a collider is refused with body, collider a
 
 TEST_CASE("what pins hold may lie inside a collider") {
     sim::Scene scene = block_on_ground(0.4, 0.3 * edge);
-    sim::Pin pin;
-    pin.name = "foot";
-    pin.body = "block";
-    pin.select.is = sim::Selector::HalfSpace{{0, 0, -0.02}, {0, 0, 1}};
-    scene.pins.push_back(pin);
+    scene.pins = {tests::foot_of("block")};
     CHECK(refusal(scene).empty());
 }
 
@@ -74,5 +59,6 @@ TEST_CASE("points that just touch the ground make no energy, however their cubes
     const sim::Stats stats = simulation.stats();
     CAPTURE(height);
     // Against what the contact of a whole cube's depth of 1e-6 would hold: k d²/2, k = 100 E s.
-    CHECK(stats.kinetic_energy + stats.elastic_energy < 0.5 * 100 * 1e5 * edge * 1e-14);
+    CHECK(stats.kinetic_energy + stats.elastic_energy
+          < 0.5 * 100 * young_modulus * edge * 1e-14);
 }

@@ -5,7 +5,7 @@
 
 namespace assets {
 
-struct SurfacePoint {
+struct CellVertex {
     Vec3 position{0, 0, 0};  // [m]
     bool is_sharp = false;   // on an edge or corner of the shape
 };
@@ -14,6 +14,6 @@ struct SurfacePoint {
 /// point of their edge or their corner, else that nearest to `guess`. Found by the planes that touch the surface where
 /// the cube's edges cross it; their common point is the least Σ (n·(x - p))².   [m]
 /// [Kobbelt et al. 2001, Feature sensitive surface extraction; Ju et al. 2002, Dual contouring of Hermite data]
-SurfacePoint surface_point(const Shape& shape, const Vec3& low, double edge, const Vec3& guess);
+CellVertex cell_vertex(const Shape& shape, const Vec3& low, double edge, const Vec3& guess);
 
 }  // namespace assets

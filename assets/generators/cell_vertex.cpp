@@ -1,4 +1,4 @@
-#include "assets/generators/surface_point.h"
+#include "assets/generators/cell_vertex.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -148,8 +148,10 @@ Vec3 polished(const Shape& shape, Vec3 x, const Vec3& outwards, double edge, boo
                 && plane.normal.dot(outwards) > facing)
                 planes.push_back(plane);
         }
-        if (planes.empty())
+        if (planes.empty()) {
+            is_sharp = false;
             break;
+        }
         x = common_point(planes, x, sharp, is_sharp);
     }
     return x;
@@ -167,10 +169,7 @@ Vec3 onto_surface(const Shape& shape, Vec3 x, double h) {
 
 }  // namespace
 
-SurfacePoint surface_point(const Shape& shape,
-                           const Vec3& low,
-                           double edge,
-                           const Vec3& guess) {
+CellVertex cell_vertex(const Shape& shape, const Vec3& low, double edge, const Vec3& guess) {
     const double h = slope_step * edge;
     const Vec3 near = onto_surface(shape, guess, h);
     const Cube cube(shape, low, edge);
