@@ -16,33 +16,33 @@ namespace sim {
 
 namespace {
 
-[[gnu::always_inline]] inline double sum_of(const Lanes& v) {
+[[gnu::always_inline]] inline double sum_of(const GaussLanes& v) {
     return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
 }
 
-[[gnu::always_inline]] inline double least_of(const Lanes& v) {
+[[gnu::always_inline]] inline double least_of(const GaussLanes& v) {
     double least = v[0];
-    for (int l = 1; l < lane_count; ++l)
+    for (int l = 1; l < 8; ++l)
         least = v[l] < least || v[l] != v[l] ? v[l] : least;
     return least;
 }
 
 /// x^⅓ for x > 0 by Halley's method, which converges from 1 for all of them, the last steps cubically.
-[[gnu::always_inline]] inline Lanes cube_root(const Lanes& x) {
+[[gnu::always_inline]] inline GaussLanes cube_root(const GaussLanes& x) {
     constexpr int most_steps = 1100;  // each at least halves or doubles a root that is far off
-    Lanes y = uniform<Lanes>(1);
+    GaussLanes y = uniform<GaussLanes>(1);
     for (int step = 0; step < most_steps; ++step) {
-        const Lanes cube = y * y * y;
-        const Lanes ratio = (cube + 2.0 * x) / (2.0 * cube + x);
+        const GaussLanes cube = y * y * y;
+        const GaussLanes ratio = (cube + 2.0 * x) / (2.0 * cube + x);
         y = y * ratio;
-        const Lanes change = (ratio - 1.0) * (ratio - 1.0);
+        const GaussLanes change = (ratio - 1.0) * (ratio - 1.0);
         if (!(sum_of(change) > 1e-12))  // the error is now the cube of 1e-6
             break;
     }
     return y;
 }
 
-/// F and what follows from it, at the Gauss points (S = Lanes) or the centre (double).
+/// F and what follows from it, at the Gauss points (S = GaussLanes) or the centre (double).
 template <class S>
 struct Deformation {
     Matrix3<S> F, inverse_transposed;
@@ -70,8 +70,8 @@ using Four = double __attribute__((vector_size(32)));
     std::memcpy(p, &v, sizeof v);
 }
 
-[[gnu::always_inline]] inline Deformation<Lanes> at_points(const CubeGradients& b,
-                                                           const CornerValues& x) {
+[[gnu::always_inline]] inline Deformation<GaussLanes> at_points(const CubeGradients& b,
+                                                                const CornerValues& x) {
     alignas(64) double F[9][8];
     for (int k = 0; k < 9; ++k)
         for (const int half : {0, 4}) {
@@ -80,7 +80,7 @@ using Four = double __attribute__((vector_size(32)));
                 sum += x[8 * (k % 3) + a] * four(&b.at_points[a][k / 3][half]);
             put(&F[k][half], sum);
         }
-    Deformation<Lanes> d;
+    Deformation<GaussLanes> d;
     std::memcpy(d.F.m, F, sizeof F);
     complete(d);
     return d;
@@ -116,7 +116,7 @@ template <int n>
 struct Table {
     double value[n][8];
 
-    [[gnu::always_inline]] explicit Table(const Lanes* lanes) {
+    [[gnu::always_inline]] explicit Table(const GaussLanes* lanes) {
         std::memcpy(value, lanes, sizeof value);
     }
 
@@ -155,9 +155,9 @@ struct PointStiffness {
     }
 };
 
-[[gnu::always_inline]] inline Matrix3<Lanes> scaled(const Lanes& factor,
-                                                    const Matrix3<Lanes>& M) {
-    Matrix3<Lanes> result;
+[[gnu::always_inline]] inline Matrix3<GaussLanes> scaled(const GaussLanes& factor,
+                                                         const Matrix3<GaussLanes>& M) {
+    Matrix3<GaussLanes> result;
     for (int k = 0; k < 9; ++k)
         result.m[k] = factor * M.m[k];
     return result;
@@ -186,20 +186,20 @@ double fbar_gradient(const CubeGradients& b,
                      const FbarDomain& domain,
                      const CornerValues& x,
                      CornerValues& gradient) {
-    const Deformation<Lanes> at = at_points(b, x);
+    const Deformation<GaussLanes> at = at_points(b, x);
     const Deformation<double> centre = at_centre(b, x);
     if (!(centre.J > 0) || !(least_of(at.J) > 0))
         return std::numeric_limits<double>::infinity();
-    const Lanes r = cube_root(centre.J / at.J);
-    const Matrix3<Lanes> F_bar = scaled(r, at.F);
-    Matrix3<Lanes> P_bar;
-    Lanes psi{};
+    const GaussLanes r = cube_root(centre.J / at.J);
+    const Matrix3<GaussLanes> F_bar = scaled(r, at.F);
+    Matrix3<GaussLanes> P_bar;
+    GaussLanes psi{};
     visit(domain.model, [&](auto law) INLINED {
         psi = law.energy_and_first_piola(
-            F_bar, uniform<Lanes>(domain.mu), uniform<Lanes>(domain.lambda), P_bar);
+            F_bar, uniform<GaussLanes>(domain.mu), uniform<GaussLanes>(domain.lambda), P_bar);
     });
-    const Lanes p = inner(P_bar, F_bar) / 3.0;
-    Matrix3<Lanes> P;
+    const GaussLanes p = inner(P_bar, F_bar) / 3.0;
+    Matrix3<GaussLanes> P;
     for (int k = 0; k < 9; ++k)
         P.m[k] = r * P_bar.m[k] - p * at.inverse_transposed.m[k];
 
@@ -222,22 +222,23 @@ void fbar_stiffness(const CubeGradients& b,
                     const FbarDomain& domain,
                     const CornerValues& x,
                     float* stiffness) {
-    const Deformation<Lanes> at = at_points(b, x);
+    const Deformation<GaussLanes> at = at_points(b, x);
     const Deformation<double> centre = at_centre(b, x);
-    const Lanes r = cube_root(centre.J / at.J);
-    const Matrix3<Lanes> F_bar = scaled(r, at.F);
-    Matrix3<Lanes> P_bar;
-    alignas(64) Lanes A[packed_size];
+    const GaussLanes r = cube_root(centre.J / at.J);
+    const Matrix3<GaussLanes> F_bar = scaled(r, at.F);
+    Matrix3<GaussLanes> P_bar;
+    alignas(64) GaussLanes A[packed_size];
     visit(domain.model, [&](auto law) INLINED {
-        const Lanes mu = uniform<Lanes>(domain.mu), lambda = uniform<Lanes>(domain.lambda);
+        const GaussLanes mu = uniform<GaussLanes>(domain.mu),
+                         lambda = uniform<GaussLanes>(domain.lambda);
         law.energy_and_first_piola(F_bar, mu, lambda, P_bar);
         law.stiffness(F_bar, mu, lambda, A);
     });
-    const Lanes p = inner(P_bar, F_bar) / 3.0;
+    const GaussLanes p = inner(P_bar, F_bar) / 3.0;
 
-    for (Lanes& entry : A)
+    for (GaussLanes& entry : A)
         entry = r * r * entry;
-    const Matrix3<Lanes> stress = scaled(r, P_bar);
+    const Matrix3<GaussLanes> stress = scaled(r, P_bar);
     const Table<packed_size> A_table(A);
     const Table<9> F_table(at.F.m), inverse_table(at.inverse_transposed.m),
         stress_table(stress.m);

@@ -1,4 +1,4 @@
-// Arithmetic that reads the same for one element (double) and for eight side by side (Lanes).
+// Arithmetic that reads the same for one element (double) and for several side by side (Lanes, GaussLanes).
 //
 // Everything here and in the laws is inlined into its caller, so that a caller compiled for several
 // instruction sets, [[gnu::target_clones("arch=x86-64-v4", "default")]], gets each of them whole.
@@ -6,33 +6,34 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
 
 namespace sim {
 
-inline constexpr int lane_count = 8;
+inline constexpr int lane_count = 4;
 
-/// Eight doubles, one per element; +, -, *, / act on each.
-///
-/// In memory they must stand at multiples of 64 bytes, as AVX-512 code takes for granted, although
-/// alignof(Lanes) is 32 where the base instruction set is AVX2: keep them in Matrix3<Lanes>, in
-/// alignas(64) structs, or in a LaneVector (lane_vector.h), not in a plain std::vector. And pass
-/// them by reference to functions that are not inlined: by value, the two instruction sets differ.
+/// Four doubles, one per element; +, -, *, / act on each. As many as a register of AVX2 holds: of eight, GCC keeps hardly
+/// any in registers there.
 using Lanes [[gnu::vector_size(8 * lane_count)]] = double;
 using FloatLanes [[gnu::vector_size(4 * lane_count)]] = float;  // to store, not to compute with
-using LaneBits [[gnu::vector_size(8 * lane_count)]] = std::uint64_t;
+
+/// Eight, one per Gauss point of a domain. They must stand at multiples of 64 bytes, as AVX-512 code takes for granted,
+/// although their alignof is 32 where the base instruction set is AVX2: keep them in Matrix3 or in alignas(64) structs. And
+/// pass them by reference to functions that are not inlined: by value, the two instruction sets differ.
+using GaussLanes [[gnu::vector_size(64)]] = double;
 
 /// The unsigned integers as wide as S.
 template <class S>
 struct BitsOf {
-    using Type = std::uint64_t;
+    using Type [[gnu::vector_size(sizeof(S))]] = std::uint64_t;
 };
 
 template <>
-struct BitsOf<Lanes> {
-    using Type = LaneBits;
+struct BitsOf<double> {
+    using Type = std::uint64_t;
 };
 
 /// A 3×3 matrix with its columns stacked: m[3j + i] = A_ij.
@@ -61,9 +62,10 @@ template <class S>
     return std::sqrt(x);
 }
 
-[[gnu::always_inline]] inline Lanes sqrt_of(Lanes x) {
-    Lanes root;
-    for (int lane = 0; lane < lane_count; ++lane)
+template <class S>
+[[gnu::always_inline]] inline S sqrt_of(S x) {
+    S root{};
+    for (std::size_t lane = 0; lane < sizeof(S) / sizeof(double); ++lane)
         root[lane] = std::sqrt(x[lane]);
     return root;
 }

@@ -86,9 +86,10 @@ inline Matrix3<double> nearest_rotation(const Matrix3<double>& F) {
 }
 
 /// The same in every lane.
-[[gnu::always_inline]] inline Matrix3<Lanes> nearest_rotation(const Matrix3<Lanes>& F) {
-    RotationGuess<Lanes> guess = nearest_rotation_guess(F);
-    for (int lane = 0; lane < lane_count; ++lane) {
+template <class S>
+[[gnu::always_inline]] inline Matrix3<S> nearest_rotation(const Matrix3<S>& F) {
+    RotationGuess<S> guess = nearest_rotation_guess(F);
+    for (std::size_t lane = 0; lane < sizeof(S) / sizeof(double); ++lane) {
         if (guess.trust[lane] > 0)
             continue;
         Matrix3<double> element;
