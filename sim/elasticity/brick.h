@@ -9,16 +9,19 @@
 
 namespace sim {
 
-/// A brick is a dense box of lattice cells with its own copy of the corners, x fastest. Eight consecutive slots, slot o
-/// being the domain whose lowest corner has local index o, form a batch: their corners a lie at o + step[a], so every
-/// access is one contiguous vector and no index is stored. Slots without a domain, row ends among them, have zero
-/// volume and moduli and take part as undeformed.
+/// A brick is a dense box of lattice cells with its own copy of the corners. lane_count slots in a row, slot o being the
+/// domain whose lowest corner has local index o, form a batch: their corners a lie at o + step[a], so every access is one
+/// contiguous vector and no index is stored. Slots without a domain, row ends among them, have zero volume and moduli and
+/// take part as undeformed.
+///
+/// Rows of slots run along the lattice's x, y or z, the brick's axes being the lattice's in turn: a rotation, which no
+/// isotropic law sees. F and what follows from it are in the brick's axes.
 struct Brick {
     int n_local = 0;             // local corners, padded so that every batch stays inside
     int first_local = 0;         // of this brick among those of all bricks
     std::array<int, 8> step{};   // local index offset of corner a
     std::vector<int> batch;      // first slot of each batch that holds a domain
-    std::vector<int> domain;     // (8 #batches) domain of each slot, -1 where none
+    std::vector<int> domain;     // (lane_count #batches) domain of each slot, -1 where none
     std::vector<unsigned> laws;  // (#batches) bit m set where a slot has model m
 
     LaneVector volume;      // (#batches) filled volume V [m³]

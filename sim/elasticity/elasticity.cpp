@@ -1,6 +1,7 @@
 #include "sim/elasticity/elasticity.h"
 
 #include "sim/base/parallel.h"
+#include "sim/elasticity/places.h"
 
 #include <algorithm>
 #include <map>
@@ -11,20 +12,6 @@ namespace {
 
 // Cells per brick along x, y, z: long rows for full batches, small enough for the second-level cache.
 constexpr std::array<int, 3> largest_brick = {32, 8, 8};
-
-struct Range {
-    std::array<int, 3> low, high;  // inclusive
-};
-
-Range cell_range(const Lattice& lattice) {
-    Range range{lattice.cell.front(), lattice.cell.front()};
-    for (const auto& cell : lattice.cell)
-        for (int k = 0; k < 3; ++k) {
-            range.low[k] = std::min(range.low[k], cell[k]);
-            range.high[k] = std::max(range.high[k], cell[k]);
-        }
-    return range;
-}
 
 /// Hourglass stiffness k of the bilinear modes, E_hg = k/2 Σ h²: eps mu V / (12 s²) with eps = (1+nu)/2.   [N/m]
 double hourglass_stiffness(const Lattice& lattice, int p) {
@@ -107,10 +94,7 @@ Elasticity::Elasticity(const Lattice& lattice, const Body& body) : edge_(lattice
                 if (layer >= layers.size()
                     || (key[0] & 1) + 2 * (key[1] & 1) + 4 * (key[2] & 1) != color)
                     continue;
-                std::array<int, 3> low;
-                for (int k = 0; k < 3; ++k)
-                    low[k] = range.low[k] + key[2 - k] * size[k];
-                fill_brick(lattice, body, low, size, layers[layer]);
+                fill_brick(lattice, body, layers[layer]);
             }
         }
     color_start_.push_back(static_cast<int>(bricks_.size()));
@@ -126,26 +110,23 @@ Elasticity::Elasticity(const Lattice& lattice, const Body& body) : edge_(lattice
 
 void Elasticity::fill_brick(const Lattice& lattice,
                             const Body& body,
-                            const std::array<int, 3>& low,
-                            const std::array<int, 3>& size,
                             const std::vector<int>& domains) {
     Brick brick;
-    const int stride_y = size[0] + 1, stride_z = stride_y * (size[1] + 1);
-    const int n_corners = stride_z * (size[2] + 1);
+    const Places places = best_places(lattice, domains);
+    const int n_corners = places.count;
     for (int a = 0; a < 8; ++a)
-        brick.step[a] = (a & 1) + stride_y * (a >> 1 & 1) + stride_z * (a >> 2);
+        brick.step[a] = places.step_to_corner(a);
     brick.n_local = n_corners + lane_count;
     brick.first_local = static_cast<int>(corner_of_local_.size());
     corner_of_local_.resize(brick.first_local + brick.n_local, -1);
 
     std::vector<int> domain_of_slot(n_corners + lane_count, -1);
     for (const int p : domains) {
-        const auto& cell = lattice.cell[p];
-        const int slot =
-            cell[0] - low[0] + stride_y * (cell[1] - low[1]) + stride_z * (cell[2] - low[2]);
+        const int slot = places.of(lattice.cell[p]);
         domain_of_slot[slot] = p;
         for (int a = 0; a < 8; ++a)
-            corner_of_local_[brick.first_local + slot + brick.step[a]] = lattice.corners[p][a];
+            corner_of_local_[brick.first_local + slot + brick.step[a]] =
+                lattice.corners[p][places.lattice_corner(a)];
     }
     const Lanes zero{};
     for (int slot = 0; slot < n_corners; slot += lane_count) {

@@ -37,11 +37,7 @@ class Elasticity : public ElasticEnergy {
         BrickFields fields(int n_local);
     };
 
-    void fill_brick(const Lattice& lattice,
-                    const Body& body,
-                    const std::array<int, 3>& low,
-                    const std::array<int, 3>& size,
-                    const std::vector<int>& domains);
+    void fill_brick(const Lattice& lattice, const Body& body, const std::vector<int>& domains);
     void load(const Brick& brick, const Vec3p* values, Scratch& scratch) const;
     void store(const Brick& brick, const Scratch& scratch, Vec3p* values) const;
     template <class Kernel>

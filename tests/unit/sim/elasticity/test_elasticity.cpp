@@ -123,7 +123,10 @@ double plain_energy(const Block& block, const Field& x) {
 }  // namespace
 
 TEST_CASE("the energy is the plain sum over domains, over several bricks and mixed laws") {
-    for (const auto& n : {std::array{3, 2, 2}, std::array{37, 9, 2}}) {
+    for (const auto& n : {std::array{3, 2, 2},
+                          std::array{37, 9, 2},
+                          std::array{2, 9, 7},
+                          std::array{2, 2, 9}}) {  // rows along x, y and z
         Block b = block(n);
         sim::Elasticity elasticity(b.lattice, b.body);
         const Field x =
@@ -139,7 +142,8 @@ TEST_CASE("the energy is the plain sum over domains, over several bricks and mix
 TEST_CASE(
     "the gradient is the energy's derivative, K the gradient's, by observed order; K is "
     "symmetric") {
-    Block b = block({5, 3, 2});
+    // Rows along x, y and z.
+    Block b = block(GENERATE(std::array{5, 3, 2}, std::array{2, 9, 4}, std::array{2, 3, 9}));
     sim::Elasticity elasticity(b.lattice, b.body);
     const int n = b.lattice.n_corners();
     const Field x = sum(rest_field(b.lattice), 1, random_field(n, 0.01, 2));
