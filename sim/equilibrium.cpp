@@ -48,7 +48,9 @@ bool Stepper::try_equilibrium(State& state,
     step.q_tilde.assign(n, Vec3p{});
     step.static_force = assembly_.force;
     step.is_free.assign(n, Vec3p{1, 1, 1, 0});
-    map_.apply_transposed(assembly_.mass, dof_mass_ = Field(n));
+    dof_mass_.clear();
+    for (const int c : map_.free_corner())
+        dof_mass_.push_back(assembly_.mass[c][0]);
     q_.assign(n, Vec3p{});
     for (const int c : prescribed_.corners) {
         const int i = map_.dof_of_corner()[c];

@@ -17,7 +17,7 @@ constexpr double instant = 1e-6;  // [s] in which a pin's velocity is seen where
 std::vector<PinnedNode> pinned_nodes(const Scene& scene,
                                      const Assembly& assembly,
                                      const CornerMap& map,
-                                     const Field& mass_on_dofs,
+                                     const std::vector<double>& mass_on_dofs,
                                      double time,
                                      double dt) {
     std::vector<PinnedNode> result;
@@ -33,7 +33,7 @@ std::vector<PinnedNode> pinned_nodes(const Scene& scene,
             held_mass[c] = assembly.mass[c];
         map.apply_transposed(held_mass, on_dofs);
         const auto share = [&](int i) {
-            return mass_on_dofs[i][0] > 0 ? on_dofs[i][0] / mass_on_dofs[i][0] : 0;
+            return mass_on_dofs[i] > 0 ? on_dofs[i][0] / mass_on_dofs[i] : 0;
         };
         double largest = 0;
         for (int i = 0; i < map.n_dofs(); ++i)

@@ -22,7 +22,7 @@ struct PinnedNode {
 std::vector<PinnedNode> pinned_nodes(const Scene& scene,
                                      const Assembly& assembly,
                                      const CornerMap& map,
-                                     const Field& mass_on_dofs,
+                                     const std::vector<double>& mass_on_dofs,
                                      double time,
                                      double dt);
 

@@ -25,6 +25,7 @@ std::vector<GridEnergy*> Stepper::make_points() {
             body.points ? new PointEnergy(
                 map_, static_cast<int>(b), body.begin, body.cell_size, *body.points)
                         : nullptr);
+        has_points_ |= points_.back() != nullptr;
         if (points_.back())
             energies.push_back(points_.back().get());
     }
@@ -113,18 +114,19 @@ void Stepper::add_start_gradient(Field& gradient) {
 double Stepper::seen_frequency_of_points() {
     // As for corners, on the degrees of freedom: how their inner forces change over the way dt q.
     const Field& is_free = potential_.step().is_free;
-    if (map_.is_identity())
+    if (!has_points_)
         return 0;
-    const Vec3p sums = sum_chunks(map_.n_dofs(), chunk, [&](int begin, int end) {
-        Vec3p sum{};
-        for (int i = begin; i < end; ++i) {
-            const Vec3p dx = 2 * dt_hat_ * q_moved_[i];
-            const Vec3p dg = (grid_gradient_[i] - start_gradient_[i]) * is_free[i];
-            sum += Vec3p{
-                dot(dg, dg) * inverse_mass_[i], dot(dx, dg), dof_mass_[i][0] * dot(dx, dx), 0};
-        }
-        return sum;
-    });
+    const Vec3p sums =
+        sum_chunks(map_.n_dofs() - map_.n_free(), chunk, [&](int begin, int end) {
+            Vec3p sum{};
+            for (int i = map_.n_free() + begin; i < map_.n_free() + end; ++i) {
+                const Vec3p dx = 2 * dt_hat_ * q_moved_[i];
+                const Vec3p dg = (grid_gradient_[i] - start_gradient_[i]) * is_free[i];
+                sum += Vec3p{
+                    dot(dg, dg) * inverse_mass_[i], dot(dx, dg), dof_mass_[i] * dot(dx, dx), 0};
+            }
+            return sum;
+        });
     const double force = sums[0], strain = sums[1], motion = sums[2];
     return strain * dt_hat_ * dt_hat_ > noise * motion ? std::sqrt(force / strain) : 0;
 }
@@ -133,9 +135,7 @@ double Stepper::relative_limit(const State& state) const {
     // Parts that near each other by more than a cell would not see each other on the grid. Within a body of points, and
     // between it and others, speeds are those about the mean of each body.
     const std::size_t n = assembly_.bodies.size();
-    if (std::none_of(points_.begin(), points_.end(), [](const auto& points) {
-            return points != nullptr;
-        }))
+    if (!has_points_)
         return std::numeric_limits<double>::infinity();
     std::vector<Vec3p> mean(n);
     std::vector<double> deviation(n, 0);

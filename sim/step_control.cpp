@@ -18,10 +18,11 @@ constexpr double rounding = 1e-6;  // of a number of steps
 void Stepper::advance(State& state, double end, double dt) {
     failures.clear();
     const bool is_explicit = scene_.solver.steps == Steps::Explicit;
+    measure_speed(state);
     while (state.time < end) {
         // Equal steps to the end, so that the last one is no sliver.
         const double remaining = end - state.time;
-        const double longest = is_explicit ? std::min(dt, explicit_limit(state)) : dt;
+        const double longest = is_explicit ? std::min(dt, explicit_limit()) : dt;
         const double allowed =
             std::min({longest,
                       state.dt_limit,

@@ -1,5 +1,6 @@
 #include "sim/stepper.h"
 
+#include "sim/base/parallel.h"
 #include "sim/contact/grid_contact.h"
 
 #include <algorithm>
@@ -9,6 +10,7 @@ namespace sim {
 
 namespace {
 
+constexpr int chunk = 8192;
 constexpr double forgetting = 1;  // rate at which a body's top speed fades [1/s]
 // Contact on the grid, where corners are slaved: what it asks for the map gives in part only, so it asks again.
 constexpr int passes_where_slaved = 4;
@@ -62,8 +64,16 @@ void Stepper::begin_step(const State& state, double dt, Scheme scheme) {
     prescribe(scene_, assembly_, state.time, state.time + dt, prescribed_);
     choose_free_corners(state.x);
     start_scheme(state, dt, scheme);
-    transfer(state, scheme);
-    prescribe_dofs(state, dt);
+    transfer_to_nodes(state, v_hat_, nullptr);
+    expect_free_motion();
+    prescribe_dofs(state, potential_.step().x_n, dt_hat_, dt);
+    q_.assign(map_.n_dofs(), Vec3p{});
+    for (const PrescribedDof& held : held_)
+        q_[held.dof] = held.velocity;
+    begin_forces(state, dt);
+}
+
+void Stepper::begin_forces(const State& state, double dt) {
     for (std::size_t b = 0; b < points_.size(); ++b)
         if (points_[b])
             points_[b]->begin_step(state.points[b]);
@@ -101,8 +111,6 @@ void Stepper::start_scheme(const State& state, double dt, Scheme scheme) {
             v_hat_[c] += history * dv;
         }
         dt_hat_ = dt * (1 + ratio) / (1 + 2 * ratio);
-    } else if (scheme == Scheme::Verlet) {
-        dt_hat_ = dt / 2;  // of the first kick
     }
     step.dt = dt_hat_;
 }
@@ -116,86 +124,98 @@ Stepper::Motion Stepper::motion_before(const State& state, double dt, int c) con
     return {is_free * (dt * state.v[c] - dt / 2 * dv) + prescribed_dx, is_free * dv};
 }
 
-void Stepper::transfer(const State& state, Scheme scheme) {
-    // Mass and momentum to the degrees of freedom: M = Tᵀ m, M q_n = Tᵀ (m v). Lumped means over the corners around a
-    // node see a rotation too slow where corners lie on one side of it, so the body's rigid motion goes over by its
-    // value at the node and only the rest by means: rigid motion is exact, and so is momentum, as Σ_i w_ic x_i = x_c.
-    // APIC carries rotation by itself.
+void Stepper::transfer_to_nodes(const State& state, const Field& v, const Field* inner) {
+    // Mass and momentum of slaves to nodes: M = Tᵀ m, M q_n = Tᵀ (m v); free corners keep their own. Lumped means over the
+    // corners around a node see a rotation too slow where corners lie on one side of it, so the body's rigid motion goes
+    // over by its value at the node and only the rest by means: rigid motion is exact, and so is momentum, as
+    // Σ_i w_ic x_i = x_c. APIC carries rotation by itself.
     const int n = map_.n_dofs();
-    auto& step = potential_.step();
     const bool is_affine = scene_.solver.transfer == Transfer::Apic;
     corner_.resize(state.x.size());
-    std::vector<RigidMotion> rigid;
-    for (const auto& [begin, end, cell_size, kernel] : ranges_) {
-        const bool any_slave =
-            std::find(free_.begin() + begin, free_.begin() + end, 0) != free_.begin() + end;
-        rigid.push_back(any_slave ? rigid_motion(assembly_.mass, state.x, v_hat_, begin, end)
-                                  : RigidMotion{});
-        const bool is_split = any_slave && !is_affine;
-        for (int c = begin; c < end; ++c) {
-            corner_[c] =
-                assembly_.mass[c] * v_hat_[c]
-                + Vec3p{0, 0, 0, assembly_.mass[c][0]};  // mass goes along in the fourth
-            if (is_split)
-                corner_[c] -= assembly_.mass[c] * rigid.back().at(state.x[c]);
-        }
+    acting_.resize(state.x.size());
+    std::vector<RigidMotion> rigid(ranges_.size());
+    for (std::size_t b = 0; b < ranges_.size(); ++b) {
+        const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
+        if (slaves.begin == slaves.end)
+            continue;
+        rigid[b] = rigid_motion(assembly_.mass, state.x, v, ranges_[b].begin, ranges_[b].end);
+        for_chunks(slaves.end - slaves.begin, chunk, [&](int begin, int end) {
+            for (int s = slaves.begin + begin; s < slaves.begin + end; ++s) {
+                const int c = map_.slave_corner()[s];
+                const Vec3p& m = assembly_.mass[c];
+                const Vec3p split = is_affine ? Vec3p{} : rigid[b].at(state.x[c]);
+                corner_[c] = m * (v[c] - split) + Vec3p{0, 0, 0, m[0]};  // mass in the fourth
+                acting_[c] = assembly_.force[c];
+                if (inner != nullptr)
+                    acting_[c] -= (*inner)[c];
+            }
+        });
     }
-    const Field& momentum = map_.applied_transposed(corner_, q_n_);
-    if (is_affine && !map_.is_identity())
-        add_affine_momentum(state);
-    // In explicit steps inner forces of corners act with those from outside.
-    if (scheme == Scheme::Verlet) {
-        acting_.resize(state.x.size());
-        for (std::size_t c = 0; c < state.x.size(); ++c)
-            acting_[c] = assembly_.force[c] - gradient_[c];
-    }
-    const Field& force = map_.applied_transposed(
-        scheme == Scheme::Verlet ? acting_ : assembly_.force, step.q_tilde);
-    dof_mass_.resize(n);
     q_n_.resize(n);
-    step.q_tilde.resize(n);
-    step.mass.resize(n);
+    node_force_.resize(n);
+    map_.gather_at_nodes(corner_, q_n_);
+    if (is_affine)
+        add_affine_momentum(state);
+    map_.gather_at_nodes(acting_, node_force_);
 
-    // q~ = (q_n + dt^ M⁻¹ f) / (1 + damping dt^); damping acts at the end of the step, inside M.
     // A node that corners only touch with weight zero has no mass. It moves with the body at first: points on a node see
     // the slope of linear kernels all the same, so implicit steps put it where the stress asks for.
-    const double damped = 1 + scene_.solver.damping * dt_hat_;
-    step.is_free.assign(n, Vec3p{1, 1, 1, 0});
+    dof_mass_.resize(n);
     inverse_mass_.resize(n);
-    for (int i = 0; i < n; ++i) {
-        const double mass = momentum[i][3];
-        dof_mass_[i] = Vec3p{mass, mass, mass, 0};
-        const double inverse_mass = mass > 0 ? 1 / mass : 0;
-        inverse_mass_[i] = inverse_mass;
-        q_n_[i] = inverse_mass * momentum[i] * Vec3p{1, 1, 1, 0};
-        if (!map_.is_identity() && (!is_affine || !(mass > 0)))
+    for (int i = map_.n_free(); i < n; ++i) {
+        const double mass = q_n_[i][3];
+        dof_mass_[i] = mass;
+        inverse_mass_[i] = mass > 0 ? 1 / mass : 0;
+        q_n_[i] = inverse_mass_[i] * q_n_[i] * Vec3p{1, 1, 1, 0};
+        if (!is_affine || !(mass > 0))
             q_n_[i] += rigid[map_.dof_body()[i]].at(map_.dof_position()[i]);
-        step.q_tilde[i] = (q_n_[i] + dt_hat_ * inverse_mass * force[i]) / damped;
-        step.mass[i] = damped * dof_mass_[i];
+    }
+    for (int k = 0; k < map_.n_free(); ++k) {
+        dof_mass_[k] = assembly_.mass[map_.free_corner()[k]][0];
+        inverse_mass_[k] = 1 / dof_mass_[k];
+    }
+}
+
+void Stepper::expect_free_motion() {
+    // q~ = (q_n + dt^ M⁻¹ f) / (1 + damping dt^); damping acts at the end of the step, inside M.
+    const int n = map_.n_dofs();
+    const double damped = 1 + scene_.solver.damping * dt_hat_;
+    auto& step = potential_.step();
+    step.q_tilde.resize(n);
+    step.mass.resize(n);
+    for (int k = 0; k < map_.n_free(); ++k) {
+        const int c = map_.free_corner()[k];
+        q_n_[k] = v_hat_[c];
+        node_force_[k] = assembly_.force[c];
+    }
+    for (int i = 0; i < n; ++i) {
+        const double mass = damped * dof_mass_[i];
+        step.q_tilde[i] = (q_n_[i] + dt_hat_ * inverse_mass_[i] * node_force_[i]) / damped;
+        step.mass[i] = Vec3p{mass, mass, mass, 0};
     }
     step.static_force.clear();
 }
 
-void Stepper::prescribe_dofs(const State& state, double dt) {
-    // Prescribed components move exactly to their targets. In explicit steps the whole way is one drift.
+void Stepper::prescribe_dofs(const State& state, const Field& x_n, double drift, double dt) {
+    // Prescribed components move exactly to their targets, from x_n at one velocity for the time of the drift.
     auto& step = potential_.step();
-    q_.assign(map_.n_dofs(), Vec3p{});
-    const double drift = scene_.solver.steps == Steps::Explicit ? 2 * dt_hat_ : dt_hat_;
+    step.is_free.assign(map_.n_dofs(), Vec3p{1, 1, 1, 0});
+    held_.clear();
     for (const int c : prescribed_.corners) {
-        const int i = map_.dof_of_corner()[c];
-        step.is_free[i] = prescribed_.is_free[c];
+        const Vec3p is_held = Vec3p{1, 1, 1, 0} - prescribed_.is_free[c];
         const Vec3p velocity =
-            drift > 0 ? (prescribed_.target[c] - step.x_n[c]) / drift : state.v[c];
-        q_[i] = velocity * (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]);
+            drift > 0 ? (prescribed_.target[c] - x_n[c]) / drift : state.v[c];
+        held_.push_back({map_.dof_of_corner()[c], velocity * is_held});
+        step.is_free[held_.back().dof] = prescribed_.is_free[c];
     }
     pinned_nodes_ = pinned_nodes(scene_, assembly_, map_, dof_mass_, state.time, dt);
     for (const PinnedNode& node : pinned_nodes_) {
+        held_.push_back({node.dof, node.velocity});
         step.is_free[node.dof] = node.is_free;
-        q_[node.dof] = node.velocity;
     }
 }
 
-void Stepper::exchange_contact(const State& state, double dt) {
+bool Stepper::exchange_contact(const State& state, double dt) {
     // Surface contact is between domains: points meet bodies on the grid in any case.
     std::vector<GridPair> pairs;
     const std::vector<AssembledBody>& bodies = assembly_.bodies;
@@ -211,13 +231,14 @@ void Stepper::exchange_contact(const State& state, double dt) {
         pairs,
         {state.x, assembly_.mass, assembly_.volume, assembly_.outside, prescribed_.is_free});
     if (contact.is_empty())
-        return;
+        return false;
     for (int pass = 0; pass < (map_.is_identity() ? 1 : passes_where_slaved); ++pass) {
         Field& change = corner_;
         change = moved_;
         contact.exchange(dt, change);
         move_through_grid(change);
     }
+    return true;
 }
 
 void Stepper::move_through_grid(Field& wanted) {
@@ -237,11 +258,14 @@ void Stepper::move_through_grid(Field& wanted) {
         moved_[c] += wanted[c];
 }
 
-void Stepper::drift(double length) {
-    const Field& x_n = potential_.step().x_n;
+void Stepper::drift(const Field& x_n, double length) {
     x_end_.resize(x_n.size());
     for (std::size_t c = 0; c < x_n.size(); ++c)
         x_end_[c] = x_n[c] + length * moved_[c];
+    end_on_targets();
+}
+
+void Stepper::end_on_targets() {
     for (const int c : prescribed_.corners)  // no drift by rounding
         for (int axis = 0; axis < 3; ++axis)
             if (prescribed_.is_free[c][axis] == 0)
@@ -250,23 +274,39 @@ void Stepper::drift(double length) {
 
 void Stepper::commit(State& state, double dt) {
     // Corner velocities: the new ones of the degrees of freedom, and for slaved corners what the grid could not see
-    // of the old ones (FLIP), fading at the rate of PIC: exp(-pic_rate dt) is kept per step, so that halving dt does not
-    // drain more (the paper keeps 0.95 per step).
+    // of the old ones (FLIP).
     const Field& seen = map_.applied(q_n_, corner_);
-    const double keep =
-        scene_.solver.transfer == Transfer::Apic ? 0 : std::exp(-scene_.solver.pic_rate * dt);
+    const double keep = share_kept(dt);
+    for (std::size_t c = 0; c < state.x.size(); ++c)
+        state.v[c] = moved_[c] + (free_[c] ? Vec3p{} : keep * (v_hat_[c] - seen[c]));
     std::swap(state.x, x_end_);
-    for (std::size_t b = 0; b < ranges_.size(); ++b) {
-        double fastest = 0;
-        for (int c = ranges_[b].begin; c < ranges_[b].end; ++c) {
-            state.v[c] = moved_[c] + (free_[c] ? Vec3p{} : keep * (v_hat_[c] - seen[c]));
-            fastest = std::max(fastest, dot(state.v[c], state.v[c]));
-        }
+    end_step(state, dt);
+}
+
+double Stepper::share_kept(double dt) const {
+    // It fades at the rate of PIC: exp(-pic_rate dt) is kept per step, so that halving dt does not drain more (the paper
+    // keeps 0.95 per step).
+    return scene_.solver.transfer == Transfer::Apic ? 0
+                                                    : std::exp(-scene_.solver.pic_rate * dt);
+}
+
+void Stepper::end_step(State& state, double dt) {
+    measure_speed(state);
+    for (std::size_t b = 0; b < speed_.size(); ++b)
         state.top_speed[b] =
-            std::max(std::sqrt(fastest), std::exp(-forgetting * dt) * state.top_speed[b]);
-    }
+            std::max(speed_[b], std::exp(-forgetting * dt) * state.top_speed[b]);
     state.last_dt = dt;
     state.time += dt;
+}
+
+void Stepper::measure_speed(const State& state) {
+    speed_.clear();
+    for (const auto& [begin, end, cell_size, kernel] : ranges_) {
+        double squared = 0;
+        for (int c = begin; c < end; ++c)
+            squared = std::max(squared, dot(state.v[c], state.v[c]));
+        speed_.push_back(std::sqrt(squared));
+    }
 }
 
 void Stepper::refresh(const State& state) {
@@ -287,8 +327,8 @@ void Stepper::refresh(const State& state) {
 
 double Stepper::mass_on_dofs() const {
     double sum = 0;
-    for (const Vec3p& mass : dof_mass_)
-        sum += mass[0];
+    for (const double mass : dof_mass_)
+        sum += mass;
     return sum;
 }
 

@@ -73,8 +73,9 @@ class Stepper {
     bool try_step(State& state, double dt);
 
     // stepper.cpp: what all steps share
-    enum class Scheme { BackwardEuler, Bdf2, Verlet };
+    enum class Scheme { BackwardEuler, Bdf2 };
     void begin_step(const State& state, double dt, Scheme scheme);
+    void begin_forces(const State& state, double dt);
     void choose_free_corners(const Field& x);
     void start_scheme(const State& state, double dt, Scheme scheme);
 
@@ -83,12 +84,17 @@ class Stepper {
     };
 
     Motion motion_before(const State& state, double dt, int c) const;
-    void transfer(const State& state, Scheme scheme);
-    void prescribe_dofs(const State& state, double dt);
-    void exchange_contact(const State& state, double dt);
+    void transfer_to_nodes(const State& state, const Field& v, const Field* inner);
+    void expect_free_motion();
+    void prescribe_dofs(const State& state, const Field& x_n, double drift, double dt);
+    bool exchange_contact(const State& state, double dt);
     void move_through_grid(Field& wanted);
-    void drift(double length);
+    void drift(const Field& x_n, double length);
+    void end_on_targets();
     void commit(State& state, double dt);
+    double share_kept(double dt) const;
+    void end_step(State& state, double dt);
+    void measure_speed(const State& state);
 
     // point_step.cpp: what points and APIC add to a step
     std::vector<GridEnergy*> make_points();
@@ -114,11 +120,13 @@ class Stepper {
     void set_reactions();
 
     // explicit_step.cpp
-    double explicit_limit(const State& state) const;
-    double seen_frequency(const State& state) const;
+    double explicit_limit() const;
     bool try_explicit(State& state, double dt);
-    void restrain_by_contact(const State& state, double dt);
-    void restrain_by_surfaces(const State& state, double dt);
+    void first_kick(const State& state);
+    bool restrain_by_contact(const State& state, double dt);
+    bool restrain_by_surfaces(const State& state, double dt);
+    double second_kick(const State& state);
+    void kick_nodes(const State& state, double dt);
     void set_explicit_reactions(const State& state, double dt);
 
     // equilibrium.cpp
@@ -136,6 +144,7 @@ class Stepper {
     SurfaceContact surfaces_;                           // empty where contact is on the grid
     std::optional<SurfaceContact> measured_;            // there, to measure penetration only
     std::vector<std::unique_ptr<PointEnergy>> points_;  // (#bodies)
+    bool has_points_ = false;
     IncrementalPotential potential_;
     NewtonScratch scratch_;
     NewtonSummary summary_;  // of the last solve
@@ -144,15 +153,27 @@ class Stepper {
     std::vector<double> inverse_mass_;  // (#dofs) 0 where there is none [1/kg]
     double dt_hat_ = 0;                 // dt^ of the scheme [s]
     Field v_hat_;                       // v^ of the scheme (#C) [m/s]
-    Field dof_mass_, q_n_, q_;          // (#dofs)
+    std::vector<double> dof_mass_;      // (#dofs) [kg]
+    Field q_n_, q_;                     // (#dofs) [m/s]
+    Field node_force_;                  // (#dofs) Tᵀ f; at nodes alone in explicit steps [N]
     Field q_moved_;  // (#dofs) what moved_ comes from, but for a rigid shift [m/s]
+
+    /// A degree of freedom with prescribed components, and their velocity [m/s].
+    struct PrescribedDof {
+        int dof = 0;
+        Vec3p velocity{};
+    };
+
+    std::vector<PrescribedDof> held_;
     std::vector<PinnedNode> pinned_nodes_;
     std::vector<NodeReaction> node_reactions_;
     Field start_gradient_, grid_gradient_;  // of points in explicit steps (#dofs) [N]
     Field moved_;  // (#C) velocity that moves the corners in this step [m/s]
     Field corner_, reaction_;
     Field x_end_;                    // (#C) where they end [m]
-    Field acting_;                   // (#C) forces of the first kick of an explicit step [N]
+    Field v_end_;                    // (#C) and how fast, of explicit steps [m/s]
+    Field acting_;                   // (#C) forces that go to nodes, at slaves alone [N]
+    std::vector<double> speed_;      // (#bodies) of the fastest corner [m/s]
     Field gradient_, end_gradient_;  // of explicit steps, at the start and the end (#C) [N]
 };
 

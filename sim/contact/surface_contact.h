@@ -35,6 +35,9 @@ class SurfaceContact : public ContactEnergy {
 
     bool empty() const { return bodies_.empty(); }
 
+    /// Whether nothing is near anything where the step is expected to end.
+    bool finds_none() const { return contacts_.empty(); }
+
     /// What a step starts with, all of the field of corners.
     struct Start {
         const Field &x, &v;                    // [m], [m/s]

@@ -91,6 +91,12 @@ void CornerMap::visit_corners(const Field& q, const Write& write) const {
         for (int k = begin; k < end; ++k)
             write(free_corner_[k], q[k]);
     });
+    visit_slaves(q, write);
+}
+
+/// The same at slaves alone.
+template <class Write>
+void CornerMap::visit_slaves(const Field& q, const Write& write) const {
     for (const Part& part : parts_)
         visit_spline(part.kernel, [&]<class S>(S) {
             constexpr int n = S::n, per_group = n * n * n;
@@ -131,6 +137,20 @@ void CornerMap::apply(const Field& q, Field& u) const {
 void CornerMap::move(const Field& x_n, double dt, const Field& q, Field& x) const {
     x.resize(x_n.size());
     visit_corners(q, [&](int c, const Vec3p& v) { x[c] = x_n[c] + dt * v; });
+}
+
+void CornerMap::apply_and_move(
+    const Field& q, Field& u, const Field& x_n, double dt, Field& x) const {
+    u.resize(x_n.size());
+    x.resize(x_n.size());
+    visit_corners(q, [&](int c, const Vec3p& v) {
+        u[c] = v;
+        x[c] = x_n[c] + dt * v;
+    });
+}
+
+void CornerMap::apply_to_slaves(const Field& q, Field& u) const {
+    visit_slaves(q, [&](int c, const Vec3p& v) { u[c] = v; });
 }
 
 void CornerMap::find_row(int corner, std::vector<Weight>& row) const {
@@ -219,11 +239,22 @@ void CornerMap::gather(const Part& part, const Field& f, Field& q) const {
 }
 
 template <bool squared>
-void CornerMap::gather_all(const Field& f, Field& q) const {
-    for (int k = 0; k < n_free(); ++k)
-        q[k] = f[free_corner_[k]];
+void CornerMap::gather_nodes(const Field& f, Field& q) const {
     for (const Part& part : parts_)
         visit_spline(part.kernel, [&]<class S>(S) { gather<S, squared>(part, f, q); });
+}
+
+template <bool squared>
+void CornerMap::gather_all(const Field& f, Field& q) const {
+    for_chunks(n_free(), node_chunk, [&](int begin, int end) {
+        for (int k = begin; k < end; ++k)
+            q[k] = f[free_corner_[k]];
+    });
+    gather_nodes<squared>(f, q);
+}
+
+void CornerMap::gather_at_nodes(const Field& f, Field& q) const {
+    gather_nodes<false>(f, q);
 }
 
 void CornerMap::apply_transposed(const Field& f, Field& q) const {

@@ -61,8 +61,17 @@ class CornerMap {
     /// x = x_n + dt T q.   x_n, x (#C), q (#dofs)
     void move(const Field& x_n, double dt, const Field& q, Field& x) const;
 
+    /// u = T q and x = x_n + dt u.   q (#dofs), u, x_n, x (#C)
+    void apply_and_move(const Field& q, Field& u, const Field& x_n, double dt, Field& x) const;
+
+    /// u = T q at slaves alone.   q (#dofs), u (#C)
+    void apply_to_slaves(const Field& q, Field& u) const;
+
     /// q = Tᵀ f.   f (#C), q (#dofs)
     void apply_transposed(const Field& f, Field& q) const;
+
+    /// q = Tᵀ f at nodes alone, where only slaves count.   f (#C), q (#dofs)
+    void gather_at_nodes(const Field& f, Field& q) const;
 
     /// T q and Tᵀ f, in `buffer` or, where T is the identity, without a copy.
     const Field& applied(const Field& q, Field& buffer) const;
@@ -136,11 +145,15 @@ class CornerMap {
 
     // corner_map.cpp
     template <class Write>
+    void visit_slaves(const Field& q, const Write& write) const;
+    template <class Write>
     void visit_corners(const Field& q, const Write& write) const;
     template <class S, bool squared>
     void gather(const Part& part, const Field& f, Field& q) const;
     template <bool squared>
     void gather_all(const Field& f, Field& q) const;
+    template <bool squared>
+    void gather_nodes(const Field& f, Field& q) const;
     template <class S>
     void pass(
         const Part& part, Factor factor, const Field* q, const AtSlaves& f, Field* sums) const;
