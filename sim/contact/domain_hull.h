@@ -10,17 +10,29 @@
 
 namespace sim {
 
-constexpr int n_hull_directions = 13;
+/// Axes, and diagonals of the faces and of the cube: 13 unit vectors, four side by side; the last stands for the rest.
+struct HullDirections {
+    static constexpr int n = 13, n_fours = (n + 3) / 4;
+    std::array<Vec3p, n_fours> x{}, y{}, z{};
 
-/// Axes, and diagonals of the faces and of the cube.
-inline const std::array<Vec3p, n_hull_directions> hull_directions = [] {
-    std::array<Vec3p, n_hull_directions> made;
-    for (int n = 0; n < n_hull_directions; ++n) {
-        const int code = n + 14;  // one half of the 26 neighbours of a cell
-        made[n] = padded(Vec3(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1).normalized());
+    HullDirections() {
+        for (int k = 0; k < 4 * n_fours; ++k) {
+            const int code =
+                std::min(k, n - 1) + 14;  // one half of the 26 neighbours of a cell
+            const Vec3 unit = Vec3(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1).normalized();
+            x[k / 4][k % 4] = unit.x();
+            y[k / 4][k % 4] = unit.y();
+            z[k / 4][k % 4] = unit.z();
+        }
     }
-    return made;
-}();
+
+    /// Of a point in the directions of four k.   [m]
+    Vec3p along(int four, const Vec3p& at) const {
+        return x[four] * at[0] + y[four] * at[1] + z[four] * at[2];
+    }
+};
+
+inline const HullDirections hull_directions;
 
 constexpr double beyond_domain = 0.25;  // of domains beyond themselves, in domain edges
 
@@ -41,31 +53,31 @@ inline void go_beyond(std::array<Vec3p, 8>& corners) {
 struct Hull {
     Vec3p centre{};
     double squared_radius = 0;
-    std::array<double, n_hull_directions> low, high;
+    std::array<Vec3p, HullDirections::n_fours> low, high;
 
     explicit Hull(const std::array<Vec3p, 8>& corners) {
-        low.fill(std::numeric_limits<double>::infinity());
-        high.fill(-low[0]);
-        for (const Vec3p& x : corners) {
-            centre += 0.125 * x;
-            for (int k = 0; k < n_hull_directions; ++k) {
-                const double along = dot(hull_directions[k], x);
-                low[k] = std::min(low[k], along);
-                high[k] = std::max(high[k], along);
+        for (int k = 0; k < HullDirections::n_fours; ++k) {
+            low[k] = high[k] = hull_directions.along(k, corners[0]);
+            for (int a = 1; a < 8; ++a) {
+                const Vec3p along = hull_directions.along(k, corners[a]);
+                low[k] = smaller(low[k], along);
+                high[k] = larger(high[k], along);
             }
         }
+        for (const Vec3p& x : corners)
+            centre += 0.125 * x;
         for (const Vec3p& x : corners)
             squared_radius = std::max(squared_radius, dot(x - centre, x - centre));
     }
 
     /// Of x, along the direction that parts it most; changes by no more than x moves, seen from the corners.   [m]
     double gap(const Vec3p& x) const {
-        double most = -std::numeric_limits<double>::infinity();
-        for (int k = 0; k < n_hull_directions; ++k) {
-            const double along = dot(hull_directions[k], x);
-            most = std::max({most, along - high[k], low[k] - along});
+        Vec3p most = Vec3p{} - std::numeric_limits<double>::infinity();
+        for (int k = 0; k < HullDirections::n_fours; ++k) {
+            const Vec3p along = hull_directions.along(k, x);
+            most = larger(most, larger(along - high[k], low[k] - along));
         }
-        return most;
+        return std::max(largest_entry(most), most[3]);
     }
 
     /// Whether neither the ball nor any direction parts them.

@@ -3,7 +3,6 @@
 #include "sim/base/parallel.h"
 #include "sim/contact/contact_search.h"
 #include "sim/contact/domain_hull.h"
-#include "sim/materials/signed_svd.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,36 +37,6 @@ std::array<int, 3> block_of(std::array<int, 3> cell, int edge) {
 
 }  // namespace
 
-/// Seen from a frame that flies and turns with a body, it does not move when it does that alone.
-struct FoldWatch::OwnFrame {
-    Vec3p centre{};
-    std::array<Vec3p, 3> column{};  // of the rotation into the frame
-
-    /// The rotation is that of the polar decomposition of Σ x (X - X_mean)^T, `from_rest_centre` being X - X_mean.
-    OwnFrame(const Field& x, int begin, const Field& from_rest_centre) {
-        std::array<Vec3p, 3> sum{};
-        for (std::size_t c = 0; c < from_rest_centre.size(); ++c) {
-            const Vec3p at = x[begin + c];
-            centre += at;
-            for (int k = 0; k < 3; ++k)
-                sum[k] += from_rest_centre[c][k] * at;
-        }
-        centre /= double(from_rest_centre.size());
-        Mat3 covariance;
-        covariance << unpadded(sum[0]), unpadded(sum[1]), unpadded(sum[2]);
-        const auto [U, stretch, V] = signed_svd(covariance);
-        const Mat3 inverse = V * U.transpose();
-        for (int k = 0; k < 3; ++k)
-            column[k] = padded(inverse.col(k));
-    }
-
-    Vec3p seen(const Vec3p& x) const {
-        const Vec3p from_centre = x - centre;
-        return from_centre[0] * column[0] + from_centre[1] * column[1]
-               + from_centre[2] * column[2];
-    }
-};
-
 FoldWatch::FoldWatch(const ContactSurface& surface) : surface_(&surface) {
     const Lattice& lattice = *surface.lattice;
     Blocks vertices, domains;
@@ -83,51 +52,48 @@ FoldWatch::FoldWatch(const ContactSurface& surface) : surface_(&surface) {
     for (const int p : surface.shell)
         domains[block_of(lattice.cell[p], domain_block)].push_back(p);
     for (auto& [cell, block] : vertices)
-        vertex_blocks_.push_back(std::move(block));
+        vertex_blocks_.emplace_back(surface, std::move(block));
     for (auto& [cell, block] : domains)
         domain_blocks_.push_back(std::move(block));
-    for (const std::vector<int>& block : vertex_blocks_)
-        carriers_.push_back(carriers_of(block));
 
     Vec3 rest_centre = Vec3::Zero();
     for (const Vec3& X : lattice.corner_rest)
         rest_centre += X / lattice.n_corners();
     for (const Vec3& X : lattice.corner_rest)
         from_rest_centre_.push_back(padded(X - rest_centre));
-}
-
-std::vector<int> FoldWatch::carriers_of(const std::vector<int>& vertices) const {
-    std::vector<int> corners;
-    for (const int v : vertices)
-        for (const int c : surface_->vertices[v].corners)
-            corners.push_back(c - surface_->begin);
-    std::sort(corners.begin(), corners.end());
-    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-    return corners;
-}
-
-double FoldWatch::see(const Field& x) {
-    const OwnFrame frame(x, surface_->begin, from_rest_centre_);
-    seen_.resize(from_rest_centre_.size());
-    moved_.resize(seen_.size());
-    followed_.resize(seen_.size());
-    PaddedBounds all;
-    for (std::size_t c = 0; c < seen_.size(); ++c) {
-        seen_[c] = frame.seen(x[surface_->begin + c]);
-        moved_[c] = seen_[c] - followed_[c];
-        all.add(moved_[c]);
-    }
     const double of_continued = std::pow(1 + 2 * beyond_domain, 3);
-    return (of_vertex_ + of_continued) / 2 * all.farthest(all)
+    of_gaps_ = (of_vertex_ + of_continued) / 2;
+    for (Field* field : {&x_seen_, &seen_, &followed_, &moved_})
+        field->assign(from_rest_centre_.size(), Vec3p{});
+}
+
+double FoldWatch::change_at_most(const Field& x) {
+    FrameSums sums;
+    PaddedBounds moved;
+    for (std::size_t c = 0; c < from_rest_centre_.size(); ++c) {
+        const Vec3p at = x[surface_->begin + c];
+        sums.add(at, from_rest_centre_[c]);
+        moved.add(at - x_seen_[c]);
+    }
+    now_ = sums.frame(from_rest_centre_.size());
+    // Rᵀ a with a between two corners: the change of a, and the turn of what it was.
+    return change_seen_
+           + of_gaps_ * (moved.farthest(moved) + now_.turn_from(frame_seen_) * wide_seen_)
            + rounding * surface_->lattice->edge;
 }
 
-Vec3p FoldWatch::at_vertex(int v, const Field& values) const {
-    const ContactVertex& vertex = surface_->vertices[v];
-    Vec3p sum{};
-    for (int a = 0; a < 8; ++a)
-        sum += vertex.weights[a] * values[vertex.corners[a] - surface_->begin];
-    return sum;
+double FoldWatch::see(const Field& x) {
+    PaddedBounds moved, all;
+    for (std::size_t c = 0; c < seen_.size(); ++c) {
+        x_seen_[c] = x[surface_->begin + c];
+        seen_[c] = now_.seen(x_seen_[c]);
+        moved_[c] = seen_[c] - followed_[c];
+        moved.add(moved_[c]);
+        all.add(seen_[c]);
+    }
+    frame_seen_ = now_;
+    wide_seen_ = all.farthest(all);
+    return of_gaps_ * moved.farthest(moved) + rounding * surface_->lattice->edge;
 }
 
 std::array<Vec3p, 8> FoldWatch::at_continued(int p, const Field& values) const {
@@ -156,17 +122,7 @@ void FoldWatch::follow() {
     if (!(unlisted_change_ < (far - least_left) * edge))
         list_pairs();
 
-    std::vector<std::vector<BlockPair*>> used_up;  // by their domains
-    for (BlockPair& pair : pairs_) {
-        if (pair.change < pair.apart - least_left * edge)
-            continue;
-        if (used_up.empty() || used_up.back().front()->of_domains != pair.of_domains)
-            used_up.emplace_back();
-        used_up.back().push_back(&pair);
-    }
-    for_chunks(
-        static_cast<int>(used_up.size()), 1, [&](int k, int /*end*/) { look_at(used_up[k]); });
-
+    look_at_used_up();
     followed_ = seen_;
     left_ = far * edge - unlisted_change_;
     for (const BlockPair& pair : pairs_)
@@ -183,7 +139,7 @@ void FoldWatch::add_changes() {
         of_domains(domain_blocks_.size());
     PaddedBounds all;
     for (std::size_t a = 0; a < of_vertices.size(); ++a) {
-        for (const int c : carriers_[a])
+        for (const int c : vertex_blocks_[a].carriers)
             of_vertices[a].add(moved_[c]);
         all.add(of_vertices[a]);
     }
@@ -203,20 +159,19 @@ void FoldWatch::add_changes() {
 }
 
 void FoldWatch::list_pairs() {
-    std::vector<PaddedBounds> of_vertices(vertex_blocks_.size()), of_domains;
-    for (std::size_t a = 0; a < of_vertices.size(); ++a)
-        for (const int v : vertex_blocks_[a])
-            of_vertices[a].add(at_vertex(v, seen_));
+    std::vector<PaddedBounds> of_domains;
+    for (VertexBlock& block : vertex_blocks_)
+        block.place(*surface_, seen_);
     for (const std::vector<int>& block : domain_blocks_)
         of_domains.push_back(of_continued(block, seen_));
     // Both lists are in the same order; what is known of a pair stays.
     std::vector<BlockPair> pairs;
     auto old = pairs_.begin();
     for (int b = 0; b < static_cast<int>(of_domains.size()); ++b)
-        for (int a = 0; a < static_cast<int>(of_vertices.size()); ++a) {
+        for (int a = 0; a < static_cast<int>(vertex_blocks_.size()); ++a) {
             const bool is_known =
                 old != pairs_.end() && old->of_domains == b && old->of_vertices == a;
-            const double gap = of_vertices[a].gap(of_domains[b]);
+            const double gap = vertex_blocks_[a].bounds.gap(of_domains[b]);
             if (gap < far * surface_->lattice->edge)
                 pairs.push_back(is_known ? std::move(*old) : BlockPair{a, b, {}, gap});
             old += is_known;
@@ -225,56 +180,88 @@ void FoldWatch::list_pairs() {
     unlisted_change_ = 0;
 }
 
+void FoldWatch::look_at_used_up() {
+    const double edge = surface_->lattice->edge;
+    std::vector<std::vector<BlockPair*>> used_up;  // by their domains
+    std::vector<char> is_looked_at(vertex_blocks_.size(), 0);
+    for (BlockPair& pair : pairs_) {
+        if (pair.change < pair.apart - least_left * edge)
+            continue;
+        if (used_up.empty() || used_up.back().front()->of_domains != pair.of_domains)
+            used_up.emplace_back();
+        used_up.back().push_back(&pair);
+        is_looked_at[pair.of_vertices] = 1;
+    }
+    for_chunks(static_cast<int>(vertex_blocks_.size()), 4, [&](int begin, int end) {
+        for (int a = begin; a < end; ++a)
+            if (is_looked_at[a])
+                vertex_blocks_[a].place(*surface_, seen_);
+    });
+    for_chunks(
+        static_cast<int>(used_up.size()), 1, [&](int k, int /*end*/) { look_at(used_up[k]); });
+}
+
 void FoldWatch::look_at(const std::vector<BlockPair*>& pairs) const {
     const double edge = surface_->lattice->edge, stranger = neighbourhood * edge;
     const std::vector<int>& domains = domain_blocks_[pairs.front()->of_domains];
     std::vector<std::array<Vec3p, 8>> corners;
     std::vector<PaddedBounds> bounds;
+    std::vector<Vec3> centres;  // at rest
     PaddedBounds all;
     for (const int p : domains) {
+        centres.push_back(surface_->domain_centre(p));
         corners.push_back(at_continued(p, seen_));
         bounds.push_back(bounds_of(corners.back()));
         all.add(bounds.back());
     }
-    Field vertices;
+    std::vector<std::optional<Hull>> hulls(domains.size());
     for (BlockPair* pair : pairs) {
-        const std::vector<int>& block = vertex_blocks_[pair->of_vertices];
-        vertices.clear();
-        for (const int v : block)
-            vertices.push_back(at_vertex(v, seen_));
-        const PaddedBounds around = bounds_of(vertices);
-        *pair = {
-            pair->of_vertices, pair->of_domains, {}, std::max(watched * edge, all.gap(around))};
+        const VertexBlock& block = vertex_blocks_[pair->of_vertices];
+        pair->near.clear();
+        pair->apart = std::max(watched * edge, all.gap(block.bounds));
+        pair->change = 0;
         for (std::size_t d = 0; d < domains.size(); ++d) {
-            if (bounds[d].gap(around) >= pair->apart)
+            if (bounds[d].gap(block.bounds) >= pair->apart)
                 continue;
-            const Vec3 rest_centre = surface_->domain_centre(domains[d]);
-            std::optional<Hull> hull;
-            for (std::size_t k = 0; k < block.size(); ++k) {
-                if (bounds[d].gap({vertices[k], vertices[k]}) >= pair->apart
-                    || (surface_->vertices[block[k]].rest - rest_centre).squaredNorm()
-                           < stranger * stranger)
-                    continue;
-                if (!hull)
-                    hull.emplace(corners[d]);
-                const double gap = hull->gap(vertices[k]);
+            const Vec3& centre = centres[d];
+            block.for_strangers_near(bounds[d], pair->apart, centre, stranger, [&](int k) {
+                const int v = block.vertices[k];
+                if ((surface_->vertices[v].rest - centre).squaredNorm() < stranger * stranger)
+                    return;
+                if (!hulls[d])
+                    hulls[d].emplace(corners[d]);
+                const double gap = hulls[d]->gap(block.at(k));
                 if (gap < pair->apart)
-                    pair->near.push_back({block[k], domains[d], gap});
-            }
+                    pair->near.push_back({v, domains[d], gap});
+            });
         }
     }
 }
 
+bool FoldWatch::is_in(const Near& near, const Field& x) const {
+    std::array<Vec3p, 8> corners;
+    for (int a = 0; a < 8; ++a)
+        corners[a] = now_.seen(x[surface_->begin + surface_->lattice->corners[near.domain][a]]);
+    go_beyond(corners);
+    const ContactVertex& vertex = surface_->vertices[near.vertex];
+    Vec3p at{};
+    for (int a = 0; a < 8; ++a)
+        at += vertex.weights[a] * now_.seen(x[vertex.corners[a]]);
+    return Hull(corners).holds(at);
+}
+
 std::vector<int> FoldWatch::strangers(const Field& x) {
-    double change = see(x);
+    double change = change_at_most(x);
     if (!(change < left_)) {
-        follow();
-        change = 0;
+        change = change_seen_ = see(x);
+        if (!(change < left_)) {
+            follow();
+            change = change_seen_ = 0;
+        }
     }
     std::vector<int> found;
     for (const Near& near : nearest_)
-        if (near.gap <= change
-            && Hull(at_continued(near.domain, seen_)).holds(at_vertex(near.vertex, seen_)))
+        if (near.gap <= change && is_in(near, x))
             found.push_back(near.vertex);
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
