@@ -2,6 +2,7 @@
 
 #include "sim/base/parallel.h"
 #include "sim/contact/contact_search.h"
+#include "sim/contact/padded_bounds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +22,7 @@ constexpr double rest_recovery =
     0.1;  // of a gap that had to be shifted, in domain edges per second
 constexpr double impact_recovery =
     0.25;  // the same, as a share of the speed at which bodies may meet
+constexpr double rounding = 1e-12;  // of speeds
 constexpr double least_margin =
     0.25;  // around bodies where vertices are looked at, in domain edges
 
@@ -43,23 +45,42 @@ std::vector<SurfaceContact::Extent> SurfaceContact::extents(const Field& x,
     for_chunks(static_cast<int>(bodies_.size()), 1, [&](int b, int /*end*/) {
         const int begin = bodies_[b].begin, end = begin + bodies_[b].lattice->n_corners();
         Extent& extent = result[b];
-        extent.bounds = bodies_[b].bounds(x);
+        PaddedBounds places, velocities;
         Vec3p sum{};
-        for (int c = begin; c < end; ++c)
+        for (int c = begin; c < end; ++c) {
+            places.add(x[c]);
+            velocities.add(v[c]);
             sum += v[c];
+        }
         const Vec3p mean = sum / double(end - begin);
-        double squared = 0;
-        for (int c = begin; c < end; ++c)
-            squared = std::max(squared, dot(v[c] - mean, v[c] - mean));
+        extent.bounds = {unpadded(places.low), unpadded(places.high)};
         extent.velocity = unpadded(mean);
-        extent.spread = std::sqrt(squared);
+        extent.most_spread = (1 + rounding) * velocities.farthest({mean, mean});
     });
     return result;
 }
 
-double SurfaceContact::approach(const Pair& pair) const {
+double SurfaceContact::spread(int body, const Field& v) {
+    Extent& extent = extents_[body];
+    if (!extent.spread) {
+        const int begin = bodies_[body].begin, end = begin + bodies_[body].lattice->n_corners();
+        const Vec3p mean = padded(extent.velocity);
+        double squared = 0;
+        for (int c = begin; c < end; ++c)
+            squared = std::max(squared, dot(v[c] - mean, v[c] - mean));
+        extent.spread = std::sqrt(squared);
+    }
+    return *extent.spread;
+}
+
+double SurfaceContact::approach(const Pair& pair, const Field& v) {
+    const Vec3 apart = extents_[pair.of_vertices].velocity - extents_[pair.of_domains].velocity;
+    return apart.norm() + spread(pair.of_vertices, v) + spread(pair.of_domains, v);
+}
+
+double SurfaceContact::most_approach(const Pair& pair) const {
     const Extent &a = extents_[pair.of_vertices], &b = extents_[pair.of_domains];
-    return (a.velocity - b.velocity).norm() + a.spread + b.spread;
+    return (a.velocity - b.velocity).norm() + a.most_spread + b.most_spread;
 }
 
 double SurfaceContact::distance(const Pair& pair, const std::vector<Extent>& extents) {
@@ -89,10 +110,13 @@ double SurfaceContact::largest_step(const Start& start, double dt) {
     extents_ = extents(start.x, start.v);
     double limit = infinity;
     for (const Pair& pair : pairs_) {
-        const double speed = approach(pair), apart = distance(pair, extents_);
+        const double apart = distance(pair, extents_);
         const ContactSurface &a = bodies_[pair.of_vertices], &b = bodies_[pair.of_domains];
         const double thickness = std::min({b.lattice->edge, a.thickness, b.thickness}),
                      way = std::max(apart, share_of_thickness * thickness);
+        if (way >= most_approach(pair) * dt)
+            continue;
+        const double speed = approach(pair, start.v);
         if (way < speed * dt && (!pair.is_self() || may_fold(pair, start, speed * dt, dt)))
             limit = std::min(limit, way / speed);
     }
@@ -105,8 +129,12 @@ void SurfaceContact::begin_step(const Start& start, const Field& x_expected, dou
     dt_ = dt;
     extents_ = extents(start.x, start.v);
     for (Pair& pair : pairs_) {
-        const double edge = bodies_[pair.of_domains].lattice->edge, speed = approach(pair);
-        pair.margin = std::max(least_margin * edge, speed * dt);
+        const double edge = bodies_[pair.of_domains].lattice->edge, least = least_margin * edge;
+        // Speeds that widen no margin, of a pair that is not within it, change nothing.
+        const bool matters = most_approach(pair) * dt > least
+                             || (!pair.is_self() && distance(pair, extents_) <= least);
+        const double speed = matters ? approach(pair, start.v) : 0;
+        pair.margin = std::max(least, speed * dt);
         pair.recovery =
             std::max(rest_recovery * edge, pair.is_self() ? 0 : impact_recovery * speed) * dt;
         pair.top_speed = start.top_speed[bodies_[pair.of_vertices].scene_body]

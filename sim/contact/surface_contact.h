@@ -8,6 +8,7 @@
 #include "sim/contact/pair_friction.h"
 #include "sim/grid/corner_map.h"
 
+#include <optional>
 #include <vector>
 
 namespace sim {
@@ -105,7 +106,9 @@ class SurfaceContact : public ContactEnergy {
     struct Extent {
         Bounds bounds;
         Vec3 velocity{0, 0, 0};  // mean of the corners [m/s]
-        double spread = 0;       // of the corners' velocities around it, at most [m/s]
+        double most_spread = 0;  // at least `spread`, from a box around the velocities [m/s]
+        std::optional<double> spread =
+            {};  // of the corners' velocities around it, at most [m/s]
     };
 
     /// Of the Hessian, where it is not zero.
@@ -115,7 +118,10 @@ class SurfaceContact : public ContactEnergy {
     };
 
     std::vector<Extent> extents(const Field& x, const Field& v) const;
-    double approach(const Pair& pair) const;
+    /// The speed at which corners of two bodies near each other, at most, and a bound of it that costs nothing.   [m/s]
+    double approach(const Pair& pair, const Field& v);
+    double most_approach(const Pair& pair) const;
+    double spread(int body, const Field& v);
     /// Of bounds.   [m]
     static double distance(const Pair& pair, const std::vector<Extent>& extents);
 
