@@ -13,6 +13,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double steepest_distance = 2;  // gap over way, at most
 constexpr double impact_depth = 0.01;    // in domain edges
+constexpr double share_left = 0.5;       // of a gap, before it is looked at again
 constexpr double share_of_thickness =
     0.4;  // that a corner may pass in a step where it is about to touch
 
@@ -40,6 +41,7 @@ ColliderContact::ColliderContact(const std::vector<Collider>& colliders,
         stiffness_.push_back(corner.stiffness);
     grips_.resize(colliders_.size() * corners_.size());
     starts_.resize(grips_.size());
+    seen_.resize(grips_.size());
     for (const MovingCollider& collider : colliders_)
         poses_.push_back(collider.pose(0));
     start_poses_ = poses_;
@@ -55,14 +57,27 @@ double ColliderContact::depth_of(const ContactCorner& corner,
     return std::max(0.0, -(distance.gap + corner.outside));
 }
 
+ColliderContact::Start ColliderContact::start_of(std::size_t k,
+                                                 std::size_t j,
+                                                 const Vec3& X) const {
+    const MovingCollider::Distance distance = colliders_[j].distance(X);
+    const Pose& end = poses_[j];
+    return {X, end.R * distance.normal, end.carry(X), distance.gap + corners_[k].outside, true};
+}
+
 double ColliderContact::depth_in_step(std::size_t k,
                                       std::size_t j,
                                       const Vec3& x,
                                       Vec3& normal) const {
-    const Start& start = starts_[k * colliders_.size() + j];
     // A corner comes no nearer than it moves, seen from the shape; twice as much where the distance is interpolated.
-    const double way = start.gap / steepest_distance;
-    if (way > 0 && (x - start.position).squaredNorm() < way * way) {
+    const auto is_apart = [&](const Start& from) {
+        const double way = from.gap / steepest_distance;
+        return way > 0 && (x - from.position).squaredNorm() < way * way;
+    };
+    Start start = starts_[k * colliders_.size() + j];
+    if (!start.is_known && !is_apart(start))
+        start = start_of(k, j, start.X);
+    if (is_apart(start)) {
         normal = start.normal;
         return 0;
     }
@@ -105,15 +120,27 @@ void ColliderContact::begin_step(const Field& x_n,
         const Pose& end = poses_[j] = collider.pose(time + dt);
         for (std::size_t k = 0; k < corners_.size(); ++k) {
             const Vec3 X = start.bring_back(unpadded(x_n[corners_[k].corner]));
-            const MovingCollider::Distance distance = collider.distance(X);
-            const Start& at = starts_[k * colliders_.size() + j] = {
-                end.R * distance.normal, end.carry(X), distance.gap + corners_[k].outside};
-            grips_[k * colliders_.size() + j] = Grip::of(collider.friction(),
-                                                         stiffness_[k],
-                                                         std::max(0.0, -at.gap),
-                                                         dt,
-                                                         at.normal,
-                                                         at.position);
+            Start& at = starts_[k * colliders_.size() + j];
+            Seen& seen = seen_[k * colliders_.size() + j];
+            Grip& grip = grips_[k * colliders_.size() + j];
+            // Far ones are looked at again when they may have come much nearer.
+            const double left = seen.gap - steepest_distance * (X - seen.X).norm();
+            if (left > share_left * seen.gap) {
+                at.X = X;
+                at.position = end.carry(X);
+                at.gap = left;
+                at.is_known = false;
+                grip.force = 0;
+                continue;
+            }
+            at = start_of(k, j, X);
+            seen = {X, at.gap};
+            grip = Grip::of(collider.friction(),
+                            stiffness_[k],
+                            std::max(0.0, -at.gap),
+                            dt,
+                            at.normal,
+                            at.position);
         }
     }
 }

@@ -86,10 +86,19 @@ class ColliderContact : public ContactEnergy {
 
     /// A corner and a collider at the start of the step, as the collider carries them to its end.
     struct Start {
+        Vec3 X{0, 0, 0};                          // in the shape's own frame [m]
         Vec3 normal{0, 0, 0}, position{0, 0, 0};  // the normal is 0 before the first step
-        double gap = 0;                           // of the body's surface [m]
+        double gap = 0;        // of the body's surface, or less: no normal is known then [m]
+        bool is_known = true;  // rather than `gap` at least
     };
 
+    /// When a corner's distance from a collider was last looked at.
+    struct Seen {
+        Vec3 X{0, 0, 0};  // where it was in the shape's own frame [m]
+        double gap = 0;   // then [m]
+    };
+
+    Start start_of(std::size_t k, std::size_t j, const Vec3& X) const;
     Vec3 gradient_of(const Touch& touch, const Field& x, double& energy) const;
     static Mat3 hessian_of(const Touch& touch);
     double depth_of(const ContactCorner& corner,
@@ -105,6 +114,7 @@ class ColliderContact : public ContactEnergy {
     std::vector<ContactCorner> corners_;
     std::vector<double> stiffness_;  // (#corners) k of this step
     std::vector<Start> starts_;      // (#corners × #colliders)
+    std::vector<Seen> seen_;         // (#corners × #colliders)
     std::vector<Grip> grips_;        // (#corners × #colliders)
     std::vector<Pose> start_poses_,
         poses_;  // (#colliders) at the start and the end of the step

@@ -226,3 +226,43 @@ TEST_CASE("whatever is tried within a step, a thin wall pushes back to the side 
         }
     }
 }
+
+TEST_CASE("what was seen of corners that were far changes nothing when they touch") {
+    // Corners that wander in and out of every shape: one contact that has followed them, one that starts here.
+    tests::Random random(4);
+    std::size_t n_touched = 0, n_free = 0;
+    for (const Start& start : starts(rough)) {
+        std::vector<sim::ContactCorner> corners;
+        Field x, v;
+        for (int c = 0; c < 40; ++c) {
+            corners.push_back({c, 0, 0, stiffness, mass, edge});
+            x.push_back(sim::padded(start.x_n + tests::random_vector(random, 0.4)));
+            v.push_back(sim::padded(tests::random_vector(random, 2)));
+        }
+        ColliderContact followed({start.collider}, corners);
+        for (int step = 0; step < 200; ++step) {
+            ColliderContact fresh({start.collider}, corners);
+            Field x_end = x, gradient(x.size()), expected(x.size());
+            for (std::size_t c = 0; c < x.size(); ++c) {
+                // Now and then far within one step.
+                const double length = step % 20 == 7 ? 10 * dt : dt;
+                x_end[c] += length * v[c];
+                if (step % 25 == 24)
+                    v[c] = -v[c];
+            }
+            followed.begin_step(x, at_rest, 0, dt);
+            fresh.begin_step(x, at_rest, 0, dt);
+            CHECK(followed.add_gradient(x_end, gradient)
+                  == fresh.add_gradient(x_end, expected));
+            CHECK(followed.has_changed_touch(x_end) == fresh.has_changed_touch(x_end));
+            for (std::size_t c = 0; c < x.size(); ++c) {
+                const Vec3 force = sim::unpadded(gradient[c]);
+                CHECK(force == sim::unpadded(expected[c]));
+                ++(force.norm() > 0 ? n_touched : n_free);
+            }
+            x = x_end;
+        }
+    }
+    CHECK(n_touched > 1000);
+    CHECK(n_free > 1000);
+}
