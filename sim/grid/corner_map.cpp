@@ -10,6 +10,8 @@ namespace sim {
 namespace {
 
 constexpr int group_chunk = 256;
+constexpr int group_block = 32;  // that a pass over slaves keeps in the cache
+constexpr int most_chunks = 64;  // of groups that sum apart from each other
 constexpr int node_chunk = 4096;
 constexpr double least_moment =
     1e-6;  // in cells squared: a linear spline has none on its nodes
@@ -30,56 +32,74 @@ template <int n>
            + ((w[4] * v[4] + w[5] * v[5]) + (w[6] * v[6] + w[7] * v[7]));
 }
 
-/// The second factors of G in one axis after the other: see CornerMap::Factor.
+/// The factors of a slave's stencil in one axis after the other, w of T and d of ∂w: see CornerMap::Factor.
 template <class S>
-[[gnu::always_inline]] inline void factors(
-    CornerMap::Factor factor, const Vec3p& t, double cell_size, Vec3p* w, Vec3p* d) {
-    S::weights(t, w);
-    if (factor == CornerMap::Factor::Moment) {
-        for (int a = 0; a < S::n; ++a)
-            d[a] = w[a] * (a - t) * cell_size;
-        return;
-    }
-    S::slopes(t, d);
-    for (int a = 0; a < S::n; ++a)
-        d[a] *= 1 / cell_size;
-    if (factor == CornerMap::Factor::SlopeSquared)
-        for (int a = 0; a < S::n; ++a) {
-            w[a] *= w[a];
-            d[a] *= d[a];
-        }
-}
+struct Factors {
+    Vec3p w[S::n], d[S::n];
 
-template <int n>
-[[gnu::always_inline]] inline Gradient gradient_at(const Vec3p* w,
-                                                   const Vec3p* d,
-                                                   const Vec3p* v) {
+    Factors() = default;
+
+    Factors(CornerMap::Factor factor, const Vec3p& t, double cell_size) {
+        S::weights(t, w);
+        if (factor == CornerMap::Factor::Moment) {
+            for (int a = 0; a < S::n; ++a)
+                d[a] = w[a] * (a - t) * cell_size;
+            return;
+        }
+        S::slopes(t, d);
+        for (int a = 0; a < S::n; ++a)
+            d[a] *= 1 / cell_size;
+        if (factor == CornerMap::Factor::SlopeSquared)
+            for (int a = 0; a < S::n; ++a) {
+                w[a] *= w[a];
+                d[a] *= d[a];
+            }
+    }
+};
+
+/// Σ_i v_i ∂w_i, summed along x, then y, then z.
+template <class S>
+[[gnu::always_inline]] inline Gradient gradient_at(const Factors<S>& at, const Vec3p* v) {
+    constexpr int n = S::n;
     Gradient sum{};
 #pragma GCC unroll 4
-    for (int c = 0; c < n; ++c)
+    for (int c = 0; c < n; ++c) {
+        Vec3p plane[3] = {};
 #pragma GCC unroll 4
         for (int b = 0; b < n; ++b, v += n) {
-            const Vec3p row = row_sum<n>(w, v), slope = row_sum<n>(d, v);
-            sum.column[0] += (w[b][1] * w[c][2]) * slope;
-            sum.column[1] += (d[b][1] * w[c][2]) * row;
-            sum.column[2] += (w[b][1] * d[c][2]) * row;
+            const Vec3p row = row_sum<n>(at.w, v), slope = row_sum<n>(at.d, v);
+            plane[0] += at.w[b][1] * slope;
+            plane[1] += at.d[b][1] * row;
+            plane[2] += at.w[b][1] * row;
         }
+        sum.column[0] += at.w[c][2] * plane[0];
+        sum.column[1] += at.w[c][2] * plane[1];
+        sum.column[2] += at.d[c][2] * plane[2];
+    }
     return sum;
 }
 
-/// Adds A ∂w to the nodes of one plane of a stencil.
-template <int n>
-[[gnu::always_inline]] inline void add_to_plane(
-    const Vec3p* w, const Vec3p* d, int c, const Gradient& A, Vec3p* sum) {
+/// Adds A ∂w to the nodes of rows [first, first + rows) of plane c of a stencil.
+template <class S, int rows>
+[[gnu::always_inline]] inline void add_to_rows(
+    const Factors<S>& at, int c, int first, const Gradient& A, Vec3p* sum) {
+    constexpr int n = S::n;
+    const Vec3p x = at.w[c][2] * A.column[0], y = at.w[c][2] * A.column[1],
+                z = at.d[c][2] * A.column[2];
 #pragma GCC unroll 4
-    for (int b = 0; b < n; ++b) {
-        const Vec3p along = (w[b][1] * w[c][2]) * A.column[0];
-        const Vec3p across =
-            (d[b][1] * w[c][2]) * A.column[1] + (w[b][1] * d[c][2]) * A.column[2];
+    for (int b = 0; b < rows; ++b) {
+        const double w = at.w[first + b][1], d = at.d[first + b][1];
+        const Vec3p along = w * x, across = d * y + w * z;
 #pragma GCC unroll 4
         for (int a = 0; a < n; ++a)
-            sum[n * b + a] += d[a][0] * along + w[a][0] * across;
+            sum[n * b + a] += at.d[a][0] * along + at.w[a][0] * across;
     }
+}
+
+/// How many groups sum together: of large bodies more, as every chunk meets whole layers of nodes. Whole blocks.
+int chunk_of(int n_groups) {
+    const int blocks = (n_groups + group_block * most_chunks - 1) / (group_block * most_chunks);
+    return std::max(group_chunk, group_block * blocks);
 }
 
 }  // namespace
@@ -178,18 +198,31 @@ void CornerMap::find_row(int corner, std::vector<Weight>& row) const {
     });
 }
 
-template <class S, class Write>
-void CornerMap::sum_at_nodes(const Part& part, const Write& write) const {
-    constexpr int per_group = S::n * S::n * S::n;
+template <class Sum>
+void CornerMap::sum_groups(const Part& part, int per_group, const Sum& sum, Field& sums) const {
+    const int n_groups = part.last_group - part.first_group, size = chunk_of(n_groups);
+    const int n_chunks = (n_groups + size - 1) / size;
+    if (static_cast<int>(shares_.size()) < n_chunks)
+        shares_.resize(n_chunks);
+    for_chunks(n_groups, size, [&](int begin, int end) {
+        const int* nodes = group_nodes_.data() + part.first_entry;
+        int low = nodes[begin * per_group], high = low;
+        for (int k = begin * per_group; k < end * per_group; ++k) {
+            low = std::min(low, nodes[k]);
+            high = std::max(high, nodes[k]);
+        }
+        Shares& shares = shares_[begin / size];
+        shares.first = low;
+        shares.sums.assign(high + 1 - low, Vec3p{});
+        sum(begin, end, shares);
+    });
     for_chunks(part.last_node - part.first_node, node_chunk, [&](int begin, int end) {
-        for (int i = begin; i < end; ++i) {
-            const int* sources =
-                &node_sources_[part.first_source + static_cast<std::size_t>(i) * per_group];
-            Vec3p sum{};
-            for (int a = 0; a < per_group; ++a)
-                if (sources[a] >= 0)
-                    sum += group_sums_[sources[a]];
-            write(n_free() + part.first_node + i, sum);
+        const int first = n_free() + part.first_node;
+        for (int k = 0; k < n_chunks; ++k) {
+            const Shares& shares = shares_[k];
+            const int last = std::min(first + end, shares.first + int(shares.sums.size()));
+            for (int i = std::max(first + begin, shares.first); i < last; ++i)
+                sums[i] += shares.sums[i - shares.first];
         }
     });
 }
@@ -199,10 +232,10 @@ void CornerMap::gather(const Part& part, const Field& f, Field& q) const {
     constexpr int n = S::n, per_group = n * n * n;
     constexpr int planes =
         n == 2 ? 2 : 1;  // summed at once, so that the sums live in registers
-    for_chunks(part.last_group - part.first_group, group_chunk, [&](int begin, int end) {
+    const auto sum_chunk = [&](int begin, int end, Shares& shares) {
         for (int k = begin; k < end; ++k) {
             const Group& group = groups_[part.first_group + k];
-            Vec3p* sums = &group_sums_[part.first_entry + k * per_group];
+            const int* nodes = &group_nodes_[part.first_entry + k * per_group];
             for (int first = 0; first < n; first += planes) {
                 Vec3p sum[planes * n * n] = {};
                 for (int s = group.begin; s < group.end; ++s) {
@@ -231,15 +264,16 @@ void CornerMap::gather(const Part& part, const Field& f, Field& q) const {
                         }
                 }
                 for (int a = 0; a < planes * n * n; ++a)
-                    sums[n * n * first + a] = sum[a];
+                    shares.at(nodes[n * n * first + a]) += sum[a];
             }
         }
-    });
-    sum_at_nodes<S>(part, [&](int i, const Vec3p& sum) { q[i] = sum; });
+    };
+    sum_groups(part, per_group, sum_chunk, q);
 }
 
 template <bool squared>
 void CornerMap::gather_nodes(const Field& f, Field& q) const {
+    std::fill(q.begin() + n_free(), q.begin() + n_dofs(), Vec3p{});
     for (const Part& part : parts_)
         visit_spline(part.kernel, [&]<class S>(S) { gather<S, squared>(part, f, q); });
 }
@@ -285,40 +319,54 @@ template <class S>
 void CornerMap::pass(
     const Part& part, Factor factor, const Field* q, const AtSlaves& f, Field* sums) const {
     constexpr int n = S::n, per_group = n * n * n;
+    constexpr int rows = n == 4 ? 2 : n;  // summed at once, so that the sums live in registers
     const Group* groups = groups_.data() + part.first_group;
-    for_chunks(part.last_group - part.first_group, group_chunk, [&](int begin, int end) {
+    const int* group_nodes = group_nodes_.data() + part.first_entry;
+
+    // Blocks of a few groups after each other, so that all that belongs to their slaves stays in the cache.
+    const auto pass_block = [&](int begin, int end, Shares* shares) {
+        thread_local std::vector<Factors<S>> factors;
         thread_local std::vector<Gradient> values;
         const int first = groups[begin].begin, last = groups[end - 1].end;
+        factors.clear();
+        for (int s = first; s < last; ++s)
+            factors.emplace_back(factor, slave_local_[s], part.cell_size);
         values.resize(last - first);
         if (q != nullptr)
             for (int k = begin; k < end; ++k) {
-                const int* nodes = &group_nodes_[part.first_entry + k * per_group];
                 Vec3p v[per_group];
                 for (int a = 0; a < per_group; ++a)
-                    v[a] = (*q)[nodes[a]];
-                for (int s = groups[k].begin; s < groups[k].end; ++s) {
-                    Vec3p w[n], d[n];
-                    factors<S>(factor, slave_local_[s], part.cell_size, w, d);
-                    values[s - first] = gradient_at<n>(w, d, v);
-                }
+                    v[a] = (*q)[group_nodes[k * per_group + a]];
+                for (int s = groups[k].begin; s < groups[k].end; ++s)
+                    values[s - first] = gradient_at(factors[s - first], v);
             }
-        f({first, last, begin / group_chunk}, values.data());
-        if (sums == nullptr)
+        f({first, last, begin / group_block}, values.data());
+        if (shares == nullptr)
             return;
-        for (int k = begin; k < end; ++k)
-            for (int c = 0; c < n; ++c) {
-                Vec3p sum[n * n] = {};
-                for (int s = groups[k].begin; s < groups[k].end; ++s) {
-                    Vec3p w[n], d[n];
-                    factors<S>(factor, slave_local_[s], part.cell_size, w, d);
-                    add_to_plane<n>(w, d, c, values[s - first], sum);
+        for (int k = begin; k < end; ++k) {
+            const int* nodes = group_nodes + k * per_group;
+            for (int c = 0; c < n; ++c)
+                for (int row = 0; row < n; row += rows, nodes += rows * n) {
+                    Vec3p sum[rows * n] = {};
+                    for (int s = groups[k].begin; s < groups[k].end; ++s)
+                        add_to_rows<S, rows>(
+                            factors[s - first], c, row, values[s - first], sum);
+                    for (int a = 0; a < rows * n; ++a)
+                        shares->at(nodes[a]) += sum[a];
                 }
-                std::copy_n(
-                    sum, n * n, &group_sums_[part.first_entry + k * per_group + n * n * c]);
-            }
-    });
-    if (sums != nullptr)
-        sum_at_nodes<S>(part, [&](int i, const Vec3p& sum) { (*sums)[i] += sum; });
+        }
+    };
+    if (sums == nullptr) {
+        for_chunks(part.last_group - part.first_group, group_block, [&](int begin, int end) {
+            pass_block(begin, end, nullptr);
+        });
+        return;
+    }
+    const auto sum_chunk = [&](int begin, int end, Shares& shares) {
+        for (int block = begin; block < end; block += group_block)
+            pass_block(block, std::min(block + group_block, end), &shares);
+    };
+    sum_groups(part, per_group, sum_chunk, *sums);
 }
 
 void CornerMap::visit_gradients(int body,
@@ -349,7 +397,7 @@ CornerMap::Slaves CornerMap::slaves_of(int body) const {
         return {};
     return {groups_[part.first_group].begin,
             groups_[part.last_group - 1].end,
-            (n_groups + group_chunk - 1) / group_chunk};
+            (n_groups + group_block - 1) / group_block};
 }
 
 Vec3p CornerMap::second_moment(int body, int slave) const {

@@ -21,7 +21,8 @@ struct Gradient {
 /// couples them.
 ///
 /// Slaved corners are grouped by the lowest node of their stencil: T loads a group's nodes once, Tᵀ sums a group's corners
-/// before it touches the nodes. Both are gathers in a fixed order, hence deterministic.
+/// before it touches the nodes. Fixed chunks of groups sum apart from each other and are added in their order, hence the
+/// same for any number of threads.
 class CornerMap {
   public:
     /// The corners [begin, end) of one body, its cell size h [m] and its kernel.
@@ -124,14 +125,23 @@ class CornerMap {
         int begin = 0, end = 0;  // its slaves
     };
 
-    /// The slaved corners of one body. A group has (order + 1)³ nodes; the a-th of group k stands, and its sum is kept, at
-    /// first_entry + (k - first_group) (order + 1)³ + a. Where a node's sums are is listed likewise.
+    /// The slaved corners of one body. A group has (order + 1)³ nodes; the a-th of group k stands at
+    /// first_entry + (k - first_group) (order + 1)³ + a.
     struct Part {
         Kernel kernel = Kernel::Linear;
         double cell_size = 0;
         int first_group = 0, last_group = 0, first_node = 0, last_node = 0;
-        std::size_t first_entry = 0, first_source = 0;
+        std::size_t first_entry = 0;
         int first_trilinear = 0;  // added to a slave's number, of linear kernels
+    };
+
+    /// What a chunk of groups gives to its nodes, degrees of freedom from `first` on. Nodes are numbered group by group, so
+    /// a chunk's are close together.
+    struct Shares {
+        int first = 0;
+        Field sums;
+
+        Vec3p& at(int node) { return sums[node - first]; }
     };
 
     struct Box;  // of cells
@@ -157,22 +167,20 @@ class CornerMap {
     template <class S>
     void pass(
         const Part& part, Factor factor, const Field* q, const AtSlaves& f, Field* sums) const;
-    template <class S, class Write>
-    void sum_at_nodes(const Part& part, const Write& write) const;
+    template <class Sum>
+    void sum_groups(const Part& part, int per_group, const Sum& sum, Field& sums) const;
 
     int n_nodes_ = 0;
     std::vector<int> dof_of_corner_, free_corner_, dof_body_;
     Field dof_position_;
     std::vector<Part> parts_;  // (#bodies)
     std::vector<Group> groups_;
-    std::vector<int> group_nodes_;  // (#entries) degrees of freedom
-    std::vector<int>
-        node_sources_;  // entries that a node sums, -1 where none; (order + 1)³ a node
+    std::vector<int> group_nodes_;                          // (#entries) degrees of freedom
     std::vector<int> slave_corner_;                         // (#slaves) grouped
     std::vector<int> slave_of_corner_;                      // (#C) where it is no free one
     Field slave_local_;                                     // (#slaves) t of Spline
     std::vector<std::array<double, 8>> trilinear_weights_;  // of slaves with linear kernels
-    mutable Field group_sums_;                              // (#entries) scratch of the gathers
+    mutable std::vector<Shares> shares_;                    // scratch of the gathers
 
     // Scratch of rebuild(), kept to avoid allocations in every step.
     std::vector<int> slave_order_, cell_of_slave_, cell_start_, node_of_, base_;

@@ -48,10 +48,8 @@ void CornerMap::rebuild(const Field& corners,
     slave_corner_.clear();
     slave_local_.clear();
     trilinear_weights_.clear();
-    node_sources_.clear();
     for (std::size_t b = 0; b < bodies.size(); ++b)
         rebuild_body(corners, bodies[b], static_cast<int>(b));
-    group_sums_.resize(group_nodes_.size());
 }
 
 void CornerMap::rebuild_body(const Field& corners, const BodyRange& body, int index) {
@@ -61,7 +59,6 @@ void CornerMap::rebuild_body(const Field& corners, const BodyRange& body, int in
     part.first_group = part.last_group = static_cast<int>(groups_.size());
     part.first_node = part.last_node = n_nodes_;
     part.first_entry = group_nodes_.size();
-    part.first_source = node_sources_.size();
     const auto [n, shift] = visit_spline(body.kernel, [](auto spline) {
         return std::pair(int(spline.n), double(spline.shift));
     });
@@ -176,15 +173,10 @@ void CornerMap::number_nodes(const Box& box, int n, Part& part) {
             int& node = node_of_[index(x, y, z)];
             if (node < 0) {
                 node = n_nodes_++;
-                node_sources_.resize(node_sources_.size() + per_group, -1);
                 dof_position_.push_back((box.low + Vec3p{double(x), double(y), double(z), 0})
                                         * part.cell_size);
             }
-            const std::size_t entry = part.first_entry + k * per_group + a;
-            group_nodes_[entry] = n_free() + node;
-            node_sources_[part.first_source
-                          + static_cast<std::size_t>(node - part.first_node) * per_group + a] =
-                static_cast<int>(entry);
+            group_nodes_[part.first_entry + k * per_group + a] = n_free() + node;
         }
     }
 }
