@@ -96,6 +96,30 @@ template <class S, int rows>
     }
 }
 
+/// A slave's value with the weights of its stencil, or their squares, in one axis after the other.
+template <class S>
+struct Weighted {
+    Vec3p w[S::n], value;
+
+    Weighted(const Vec3p& t, const Vec3p& value_there, bool squared) : value(value_there) {
+        S::weights(t, w);
+        if (squared)
+            for (Vec3p& weight : w)
+                weight *= weight;
+    }
+
+    [[gnu::always_inline]] void add_to_plane(int c, Vec3p* sum) const {
+        const Vec3p plane = w[c][2] * value;
+#pragma GCC unroll 4
+        for (int b = 0; b < S::n; ++b) {
+            const Vec3p row = w[b][1] * plane;
+#pragma GCC unroll 4
+            for (int a = 0; a < S::n; ++a)
+                sum[S::n * b + a] += w[a][0] * row;
+        }
+    }
+};
+
 /// How many groups sum together: of large bodies more, as every chunk meets whole layers of nodes. Whole blocks.
 int chunk_of(int n_groups) {
     const int blocks = (n_groups + group_block * most_chunks - 1) / (group_block * most_chunks);
@@ -230,41 +254,33 @@ void CornerMap::sum_groups(const Part& part, int per_group, const Sum& sum, Fiel
 template <class S, bool squared>
 void CornerMap::gather(const Part& part, const Field& f, Field& q) const {
     constexpr int n = S::n, per_group = n * n * n;
-    constexpr int planes =
-        n == 2 ? 2 : 1;  // summed at once, so that the sums live in registers
     const auto sum_chunk = [&](int begin, int end, Shares& shares) {
+        thread_local std::vector<Weighted<S>> weighted;
         for (int k = begin; k < end; ++k) {
             const Group& group = groups_[part.first_group + k];
             const int* nodes = &group_nodes_[part.first_entry + k * per_group];
-            for (int first = 0; first < n; first += planes) {
-                Vec3p sum[planes * n * n] = {};
+            if constexpr (n == 2) {
+                Vec3p sum[8] = {};
                 for (int s = group.begin; s < group.end; ++s) {
-                    if constexpr (n == 2) {
-                        const auto& w8 = trilinear_weights_[part.first_trilinear + s];
-                        const Vec3p value = f[slave_corner_[s]];
-#pragma GCC unroll 8
-                        for (int a = 0; a < 8; ++a)
-                            sum[a] += (squared ? w8[a] * w8[a] : w8[a]) * value;
-                        continue;
-                    }
-                    Vec3p w[n];
-                    S::weights(slave_local_[s], w);
-                    if (squared)
-                        for (Vec3p& weight : w)
-                            weight *= weight;
+                    const auto& w8 = trilinear_weights_[part.first_trilinear + s];
                     const Vec3p value = f[slave_corner_[s]];
-#pragma GCC unroll 4
-                    for (int c = 0; c < planes; ++c)
-#pragma GCC unroll 4
-                        for (int b = 0; b < n; ++b) {
-                            const Vec3p share = (w[b][1] * w[first + c][2]) * value;
-#pragma GCC unroll 4
-                            for (int a = 0; a < n; ++a)
-                                sum[n * (n * c + b) + a] += w[a][0] * share;
-                        }
+#pragma GCC unroll 8
+                    for (int a = 0; a < 8; ++a)
+                        sum[a] += (squared ? w8[a] * w8[a] : w8[a]) * value;
                 }
-                for (int a = 0; a < planes * n * n; ++a)
-                    shares.at(nodes[n * n * first + a]) += sum[a];
+                for (int a = 0; a < 8; ++a)
+                    shares.at(nodes[a]) += sum[a];
+                continue;
+            }
+            weighted.clear();
+            for (int s = group.begin; s < group.end; ++s)
+                weighted.emplace_back(slave_local_[s], f[slave_corner_[s]], squared);
+            for (int c = 0; c < n; ++c, nodes += n * n) {
+                Vec3p sum[n * n] = {};
+                for (const Weighted<S>& slave : weighted)
+                    slave.add_to_plane(c, sum);
+                for (int a = 0; a < n * n; ++a)
+                    shares.at(nodes[a]) += sum[a];
             }
         }
     };
