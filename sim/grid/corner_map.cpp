@@ -162,11 +162,13 @@ void CornerMap::visit_slaves(const Field& q, const Write& write) const {
                             Vec3p w[n], sum{};
                             S::weights(slave_local_[s], w);
 #pragma GCC unroll 4
-                            for (int c = 0; c < n; ++c)
+                            for (int c = 0; c < n; ++c) {
+                                Vec3p plane{};
 #pragma GCC unroll 4
                                 for (int b = 0; b < n; ++b)
-                                    sum += (w[b][1] * w[c][2])
-                                           * row_sum<n>(w, v + n * (n * c + b));
+                                    plane += w[b][1] * row_sum<n>(w, v + n * (n * c + b));
+                                sum += w[c][2] * plane;
+                            }
                             write(slave_corner_[s], sum);
                         }
                     }
