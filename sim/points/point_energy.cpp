@@ -67,6 +67,7 @@ PointEnergy::PointEnergy(const CornerMap& map,
       F_next_(points.size()) {
     for (int p = 0; p < points.size(); ++p) {
         law_.push_back(static_cast<unsigned char>(law_of(points.model[points.region[p]])));
+        laws_ |= 1u << law_.back();
         scale_ += points.volume[p] * (points.lambda[p] + 2 * points.mu[p]);
     }
 }
@@ -90,6 +91,7 @@ PointsOfSlaves PointEnergy::slaves() const {
             mu_.data(),
             lambda_.data(),
             law_.data(),
+            laws_,
             state_->F.data()};
 }
 
@@ -110,22 +112,15 @@ double PointEnergy::add_gradient(const Field& q, double dt, Field& gradient) {
     return energy;
 }
 
-double PointEnergy::add_start_gradient(Field& gradient) {
+void PointEnergy::add_start_gradient(Field& gradient) {
     const PointsOfSlaves points = slaves();
-    chunk_energy_.assign(map_.slaves_of(body_).chunk, 0);
     map_.add_transposed(
         body_,
         CornerMap::Factor::Slope,
         [&](const CornerMap::Slaves& at, Gradient* values) {
-            std::fill(values, values + (at.end - at.begin), Gradient{});
-            chunk_energy_[at.chunk] =
-                take_stresses(points, {at.begin, at.end}, 0, values, F_next_.data());
+            take_start_stresses(points, {at.begin, at.end}, values);
         },
         gradient);
-    double energy = 0;
-    for (const double part : chunk_energy_)
-        energy += part;
-    return energy;
 }
 
 void PointEnergy::linearize(const Field& q, double dt, bool project) {

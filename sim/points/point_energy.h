@@ -33,8 +33,8 @@ class PointEnergy : public GridEnergy {
 
     double length() const override { return cell_size_; }
 
-    /// The same at the start of the step, where nothing has moved.
-    double add_start_gradient(Field& gradient);
+    /// Adds ∂Φ/∂u at the start of the step, where nothing has moved, to `gradient` (#dofs) [N].
+    void add_start_gradient(Field& gradient);
 
     /// Moves F by the velocities of the step, and lets snow yield.
     void advance(const Field& q, double dt, PointState& state);
@@ -67,6 +67,7 @@ class PointEnergy : public GridEnergy {
     double cell_size_;
     const MaterialPoints& points_;
     std::vector<unsigned char> law_;   // (#P)
+    unsigned laws_ = 0;                // a bit for each of them
     std::vector<double> mu_, lambda_;  // (#P) of this step [Pa]
     double scale_ = 0;
     const PointState* state_ = nullptr;

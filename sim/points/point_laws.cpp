@@ -2,6 +2,7 @@
 
 #include "sim/materials/law.h"
 #include "sim/materials/projection.h"
+#include "sim/points/lane_rows.h"
 
 #include <algorithm>
 
@@ -17,57 +18,67 @@ namespace {
 struct Batch {
     Matrix3<Lanes> F_n;
     alignas(64) Lanes volume, mu, lambda, law;
-    unsigned laws;  // bit m set where a point has model m
+    unsigned laws;  // bit m set where a point of the body has model m
     int n;          // points; the lanes above have no volume and rest undeformed
 };
 
-ALWAYS_INLINE Matrix3<Lanes> identity() {
-    Matrix3<Lanes> I;
-    for (int k = 0; k < 9; ++k)
-        I.m[k] = uniform<Lanes>(k % 4 == 0 ? 1 : 0);
-    return I;
-}
+/// Where the points of a batch are; the lanes above have no volume and rest undeformed.
+struct Place {
+    int n;  // points
+    int point[lane_count] = {};
 
-ALWAYS_INLINE void load(const PointsOfSlaves& points,
-                        const SlaveRange& range,
-                        int b,
-                        Batch& batch) {
-    const int first = range.begin + lane_count * b;
-    batch.n = std::min(lane_count, range.end - first);
-    batch.laws = 0;
-    if (batch.n < lane_count) {
-        batch.F_n = identity();
+    ALWAYS_INLINE Place(const PointsOfSlaves& points, const SlaveRange& range, int b) {
+        const int first = range.begin + lane_count * b;
+        n = std::min(lane_count, range.end - first);
+        for (int l = 0; l < n; ++l)
+            point[l] = points.corner[first + l] - points.first_corner;
+    }
+};
+
+ALWAYS_INLINE void load(const PointsOfSlaves& points, const Place& at, Batch& batch) {
+    static const Matrix3<double> rest{{1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    const Matrix3<double>* F_n[lane_count];
+    batch.laws = points.laws;
+    if (at.n < lane_count) {
         batch.volume = batch.lambda = Lanes{};
         batch.mu = uniform<Lanes>(1);
-        batch.law = uniform<Lanes>(static_cast<double>(Model::NeoHookean));
-        batch.laws = 1u << static_cast<int>(Model::NeoHookean);
+        batch.law = uniform<Lanes>(static_cast<double>(points.law[at.point[0]]));
+        std::fill(F_n + at.n, F_n + lane_count, &rest);
     }
-    for (int l = 0; l < batch.n; ++l) {
-        const int p = points.corner[first + l] - points.first_corner;
-        for (int k = 0; k < 9; ++k)
-            batch.F_n.m[k][l] = points.F_n[p].m[k];
+    for (int l = 0; l < at.n; ++l) {
+        const int p = at.point[l];
+        F_n[l] = &points.F_n[p];
         batch.volume[l] = points.volume[p];
         batch.mu[l] = points.mu[p];
         batch.lambda[l] = points.lambda[p];
         batch.law[l] = points.law[p];
-        batch.laws |= 1u << points.law[p];
     }
+    batch.F_n = load_lanes(F_n);
+    batch.n = at.n;
 }
 
 ALWAYS_INLINE Matrix3<Lanes> load(const Gradient* values, int n) {
-    Matrix3<Lanes> D;
-    if (n < lane_count)
-        D = {};
-    for (int l = 0; l < n; ++l)
-        for (int k = 0; k < 9; ++k)
-            D.m[k][l] = values[l].column[k / 3][k % 3];
-    return D;
+    if (n == lane_count)
+        return load_lanes(values);
+    Gradient all[lane_count] = {};
+    std::copy_n(values, n, all);
+    return load_lanes(all);
 }
 
 ALWAYS_INLINE void store(const Matrix3<Lanes>& A, int n, Gradient* values) {
-    for (int l = 0; l < n; ++l)
-        for (int j = 0; j < 3; ++j)
-            values[l].column[j] = Vec3p{A.m[3 * j][l], A.m[3 * j + 1][l], A.m[3 * j + 2][l], 0};
+    if (n == lane_count)
+        return store_lanes(A, values);
+    Gradient all[lane_count];
+    store_lanes(A, all);
+    std::copy_n(all, n, values);
+}
+
+ALWAYS_INLINE void store(const Matrix3<Lanes>& F, const Place& at, Matrix3<double>* matrices) {
+    Matrix3<double> nowhere, *to[lane_count];
+    std::fill(to, to + lane_count, &nowhere);
+    for (int l = 0; l < at.n; ++l)
+        to[l] = &matrices[at.point[l]];
+    store_lanes(F, to);
 }
 
 /// A Bᵀ.
@@ -163,41 +174,57 @@ ALWAYS_INLINE void see_from_gradients(const Matrix3<Lanes>& F, const Lanes* C, F
 
 }  // namespace
 
+namespace {
+
+/// Ψ and V P F_nᵀ at F.
+ALWAYS_INLINE Matrix3<Lanes> stresses(const Batch& batch, const Matrix3<Lanes>& F, Lanes& psi) {
+    Matrix3<Lanes> P{};
+    psi = Lanes{};
+    take_law<NeoHookean>(batch, Model::NeoHookean, F, psi, P);
+    take_law<StableNeoHookean>(batch, Model::StableNeoHookean, F, psi, P);
+    take_law<FixedCorotated>(batch, Model::FixedCorotated, F, psi, P);
+    Matrix3<Lanes> A = product_transposed(P, batch.F_n);
+    for (int k = 0; k < 9; ++k)
+        A.m[k] = batch.volume * A.m[k];
+    return A;
+}
+
+}  // namespace
+
 SUPPLE_LANES
 double take_stresses(const PointsOfSlaves& points,
                      const SlaveRange& range,
                      double dt,
                      Gradient* values,
                      Matrix3<double>* F_next) {
-    alignas(64) Lanes energy{};
+    alignas(64) Lanes energy{}, psi;
     Batch batch;
     for (int b = 0; b < range.n_batches(); ++b) {
-        load(points, range, b, batch);
+        const Place at(points, range, b);
+        load(points, at, batch);
         Gradient* const here = values + lane_count * b;
-        const Matrix3<Lanes> F = moved(batch.F_n, load(here, batch.n), dt);
-
-        Lanes psi{};
-        Matrix3<Lanes> P{};
-        take_law<NeoHookean>(batch, Model::NeoHookean, F, psi, P);
-        take_law<StableNeoHookean>(batch, Model::StableNeoHookean, F, psi, P);
-        take_law<FixedCorotated>(batch, Model::FixedCorotated, F, psi, P);
+        const Matrix3<Lanes> F = moved(batch.F_n, load(here, at.n), dt);
+        store(stresses(batch, F, psi), at.n, here);
+        store(F, at, F_next);
         energy += batch.volume * psi;
-
-        Matrix3<Lanes> A = product_transposed(P, batch.F_n);
-        for (int k = 0; k < 9; ++k)
-            A.m[k] = batch.volume * A.m[k];
-        store(A, batch.n, here);
-        for (int l = 0; l < batch.n; ++l) {
-            Matrix3<double>& next =
-                F_next[points.corner[range.begin + lane_count * b + l] - points.first_corner];
-            for (int k = 0; k < 9; ++k)
-                next.m[k] = F.m[k][l];
-        }
     }
     double sum = 0;
     for (int l = 0; l < lane_count; ++l)
         sum += energy[l];
     return sum;
+}
+
+SUPPLE_LANES
+void take_start_stresses(const PointsOfSlaves& points,
+                         const SlaveRange& range,
+                         Gradient* values) {
+    alignas(64) Lanes psi;
+    Batch batch;
+    for (int b = 0; b < range.n_batches(); ++b) {
+        const Place at(points, range, b);
+        load(points, at, batch);
+        store(stresses(batch, batch.F_n, psi), at.n, values + lane_count * b);
+    }
 }
 
 SUPPLE_LANES
@@ -210,7 +237,7 @@ void take_stiffness(const PointsOfSlaves& points,
                     Lanes* weight) {
     Batch batch;
     for (int b = 0; b < range.n_batches(); ++b) {
-        load(points, range, b, batch);
+        load(points, Place(points, range, b), batch);
         const Matrix3<Lanes> F = moved(batch.F_n, load(values + lane_count * b, batch.n), dt);
         alignas(64) Lanes C[packed_size] = {};
         take_law_stiffness<NeoHookean>(batch, Model::NeoHookean, F, C);

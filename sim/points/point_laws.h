@@ -14,6 +14,7 @@ struct PointsOfSlaves {
     int first_corner = 0;
     const double *volume = nullptr, *mu = nullptr, *lambda = nullptr;  // (#P) [m³], [Pa]
     const unsigned char* law = nullptr;                                // (#P) Model as a number
+    unsigned laws = 0;                     // bit m set where a point has law m
     const Matrix3<double>* F_n = nullptr;  // (#P) at the start of the step
 };
 
@@ -36,6 +37,11 @@ double take_stresses(const PointsOfSlaves& points,
                      double dt,
                      Gradient* values,
                      Matrix3<double>* F_next);
+
+/// The same at the start of the step, F = F_n, whatever `values` held.
+void take_start_stresses(const PointsOfSlaves& points,
+                         const SlaveRange& range,
+                         Gradient* values);
 
 /// Stiffness at F = (1 + dt ∇v) F_n of each batch, and V mu of its points [J]; `project`: positive semi-definite.
 void take_stiffness(const PointsOfSlaves& points,
