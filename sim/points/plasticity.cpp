@@ -1,14 +1,67 @@
 #include "sim/points/plasticity.h"
 
+#include "sim/materials/lane_svd.h"
 #include "sim/materials/polar.h"
 #include "sim/materials/signed_svd.h"
+#include "sim/points/lane_rows.h"
 
 #include <algorithm>
 #include <cmath>
 
+// Compiled for two instruction sets and chosen at run time; both do the same operations in every lane.
+#define SUPPLE_LANES __attribute__((target_clones("arch=x86-64-v4", "default")))
+
 namespace sim {
 
 namespace {
+
+constexpr double least_stretch = 0.1;  // that is far enough from zero to divide by
+constexpr double most_defect = 1e-28;  // squared cosine of an angle between singular vectors
+
+[[gnu::always_inline]] inline Lanes smaller(const Lanes& a, const Lanes& b) {
+    return select_positive(Lanes(b - a), a, b);
+}
+
+/// Points that yield side by side, and what their stretches are brought into.
+struct YieldingBatch {
+    Matrix3<Lanes> F;
+    alignas(64) Lanes low{}, high{};
+};
+
+/// Positive where |FᵀF - 1| leaves no stretch outside of the limits.
+[[gnu::always_inline]] inline Lanes surely_inside(const YieldingBatch& batch) {
+    Matrix3<Lanes> E = gram(batch.F);
+    for (int k = 0; k < 9; k += 4)
+        E.m[k] -= 1;
+    const Lanes most = sqrt_of(inner(E, E));
+    const Lanes above = 1 - most - batch.low * batch.low;
+    const Lanes below = batch.high * batch.high - 1 - most;
+    return smaller(smaller(above, below), determinant(batch.F));
+}
+
+/// F with its stretches inside, the volume that it has lost, and whether that can be trusted: where it is positive.
+struct Yielded {
+    Matrix3<Lanes> F;
+    alignas(64) Lanes volume, trust;
+};
+
+[[gnu::always_inline]] inline Yielded yielded(const YieldingBatch& batch) {
+    const auto [B, V, defect] = orthogonal_columns(batch.F);
+    Yielded result{
+        batch.F, uniform<Lanes>(1), smaller(determinant(batch.F), most_defect - defect)};
+    for (int k = 0; k < 3; ++k) {
+        const Lanes sigma = sqrt_of(column_dot(B, k, k));
+        const Lanes kept =
+            smaller(select_positive(Lanes(sigma - batch.low), sigma, batch.low), batch.high);
+        const Lanes change = kept / sigma - 1;
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i)
+                result.F.m[3 * j + i] += change * B.m[3 * k + i] * V.m[3 * k + j];
+        result.volume *= sigma / kept;
+        result.trust = smaller(result.trust, sigma - least_stretch);
+    }
+    return result;
+}
 
 /// Whether |FᵀF - 1| leaves no stretch outside [low, high].
 bool is_surely_inside(const Matrix3<double>& F, double low, double high) {
@@ -30,6 +83,46 @@ void yield(const SnowOptions& snow, Matrix3<double>& F, double& J_plastic) {
     const Vec3 elastic = sigma.cwiseMax(low).cwiseMin(high);
     f = U * elastic.asDiagonal() * V.transpose();
     J_plastic *= std::abs(sigma.prod()) / elastic.prod();
+}
+
+SUPPLE_LANES
+void yield(const MaterialPoints& points, int begin, int end, PointState& state) {
+    static const Matrix3<double> rest{{1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    YieldingBatch batch{};
+    for (int first = begin; first < end; first += lane_count) {
+        const Matrix3<double>* F[lane_count];
+        for (int l = 0; l < lane_count; ++l) {
+            const int p = first + l;
+            const bool is_snow = p < end && points.is_snow(p);
+            const SnowOptions& snow = points.snow[points.region[std::min(p, end - 1)]];
+            F[l] = is_snow ? &state.F[p] : &rest;
+            batch.low[l] = 1 - snow.compression_limit;
+            batch.high[l] = 1 + snow.stretch_limit;
+        }
+        batch.F = load_lanes(F);
+        const Lanes inside = surely_inside(batch);
+        bool all_inside = true;
+        for (int l = 0; l < lane_count; ++l)
+            all_inside = all_inside && (F[l] == &rest || inside[l] > 0);
+        if (all_inside)
+            continue;
+        const Yielded end_state = yielded(batch);
+        Matrix3<double> F_end[lane_count], *to[lane_count];
+        for (int l = 0; l < lane_count; ++l)
+            to[l] = &F_end[l];
+        store_lanes(end_state.F, to);
+        for (int l = 0; l < lane_count; ++l) {
+            const int p = first + l;
+            if (F[l] == &rest || inside[l] > 0)
+                continue;
+            if (end_state.trust[l] > 0) {
+                state.F[p] = F_end[l];
+                state.J_plastic[p] *= end_state.volume[l];
+            } else {
+                yield(points.snow[points.region[p]], state.F[p], state.J_plastic[p]);
+            }
+        }
+    }
 }
 
 }  // namespace sim

@@ -1,8 +1,7 @@
 // How snow yields. [SSC13 §5]
 #pragma once
 
-#include "sim/materials/lanes.h"
-#include "sim/scene.h"
+#include "sim/points/material_points.h"
 
 namespace sim {
 
@@ -10,5 +9,8 @@ namespace sim {
 /// loses goes over to J_plastic, so that J J_plastic stays. The rest of the plastic part is forgotten, as nothing depends
 /// on it. Where a point was turned inside out its smallest stretch is taken as positive.
 void yield(const SnowOptions& snow, Matrix3<double>& F, double& J_plastic);
+
+/// The same, to rounding, of those among points [begin, end) that are snow, several side by side.
+void yield(const MaterialPoints& points, int begin, int end, PointState& state);
 
 }  // namespace sim

@@ -175,9 +175,7 @@ void PointEnergy::advance(const Field& q, double dt, PointState& state) {
 void PointEnergy::accept(PointState& state) {
     std::swap(state.F, F_next_);
     for_chunks(points_.size(), point_chunk, [&](int begin, int end) {
-        for (int p = begin; p < end; ++p)
-            if (points_.is_snow(p))
-                yield(points_.snow[points_.region[p]], state.F[p], state.J_plastic[p]);
+        yield(points_, begin, end, state);
     });
 }
 

@@ -1,7 +1,9 @@
+#include "sim/materials/lane_svd.h"
 #include "sim/materials/projection.h"
 #include "sim/materials/signed_svd.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
 #include <catch2/catch.hpp>
 
 #include "samples.h"
@@ -105,5 +107,51 @@ TEST_CASE("signed_svd: rotations, ordered stretches, the sign on the smallest") 
         CHECK(V.determinant() > 0);
         CHECK(sigma[0] >= sigma[1]);
         CHECK(sigma[1] >= std::abs(sigma[2]));
+    }
+}
+
+TEST_CASE("orthogonal columns are those of the singular value decomposition") {
+    Random random(12);
+    std::vector<Mat3> gradients = {Mat3::Zero(),
+                                   Mat3::Identity(),
+                                   -Mat3::Identity(),
+                                   Mat3::Ones(),
+                                   Vec3(1, 1e-12, 1e-12).asDiagonal()};
+    for (const Vec3& stretches : stretch_samples())
+        gradients.push_back(stretched(stretches, random));
+    for (const Vec3& stretches : {Vec3(1, 1, 1),
+                                  Vec3(2, 1, 1),
+                                  Vec3(2, 2, 1),
+                                  Vec3(1, 1, -1),
+                                  Vec3(3, 1e-6, 0),
+                                  Vec3(1 + 1e-9, 1, 1 - 1e-9)})
+        gradients.push_back(stretched(stretches, random));
+    while (gradients.size() % sim::lane_count != 0 || gradients.size() < 400)
+        gradients.push_back(matrix(random));
+    for (std::size_t first = 0; first < gradients.size(); first += sim::lane_count) {
+        sim::Matrix3<sim::Lanes> F;
+        for (int l = 0; l < sim::lane_count; ++l)
+            for (int k = 0; k < 9; ++k)
+                F.m[k][l] = gradients[first + l](k % 3, k / 3);
+        const auto [columns, frame, defect] = sim::orthogonal_columns(F);
+        for (int l = 0; l < sim::lane_count; ++l) {
+            const Mat3& gradient = gradients[first + l];
+            Mat3 B, V;
+            for (int k = 0; k < 9; ++k) {
+                B(k % 3, k / 3) = columns.m[k][l];
+                V(k % 3, k / 3) = frame.m[k][l];
+            }
+            // Up to 24 rotations, each of which rounds by a few 1e-16.
+            CHECK((V.transpose() * V - Mat3::Identity()).norm() <= 1e-14);
+            CHECK(V.determinant() == Approx(1));
+            CHECK((gradient * V - B).norm() <= 1e-14 * gradient.norm());
+            Vec3 sigma = B.colwise().norm();
+            std::sort(sigma.data(), sigma.data() + 3, std::greater<>());
+            const Eigen::JacobiSVD<Mat3> svd(gradient);
+            CHECK((sigma - svd.singularValues()).norm() <= 1e-14 * gradient.norm());
+            // The direction of a column that is nothing but rounding is not to be had.
+            if (svd.singularValues()[2] > 1e-3 * svd.singularValues()[0])
+                CHECK(defect[l] <= 1e-29);
+        }
     }
 }

@@ -56,3 +56,50 @@ TEST_CASE("a point turned inside out comes back with a positive volume") {
     CHECK(J_plastic > 0);
     CHECK(J_plastic * sim::determinant(F) == Approx(0.495));
 }
+
+TEST_CASE("points yield side by side as each of them alone") {
+    // Two kinds of snow and one of rubber, in any order and number; some turned inside out, flat or without size.
+    sim::MaterialPoints points;
+    points.model = {sim::Model::Snow, sim::Model::NeoHookean, sim::Model::Snow};
+    points.snow.resize(3);
+    points.snow[2].compression_limit = 0.1;
+    points.snow[2].stretch_limit = 0.05;
+    tests::Random random(5);
+    const int n = 1003;
+    for (int p = 0; p < n; ++p)
+        points.region.push_back(static_cast<int>(tests::between(random, 0, 3)));
+    points.rest.resize(n);
+    sim::PointState together(n);
+    for (int p = 0; p < n; ++p) {
+        const double size = p % 3 == 0 ? 1 : p % 3 == 1 ? 0.05 : 0.002;
+        together.F[p] = matrix(Mat3::Identity() + size * Mat3::NullaryExpr([&] {
+                                                      return tests::between(random, -1, 1);
+                                                  }));
+        if (p % 50 == 0)
+            together.F[p] = matrix(Vec3(1, 1.2, p % 100 ? 0 : -1).asDiagonal());
+        if (p % 75 == 0)
+            together.F[p] = matrix(Mat3::Zero());
+        together.J_plastic[p] = tests::between(random, 0.8, 1.2);
+    }
+    const sim::PointState before = together;
+    sim::PointState alone = together;
+    sim::yield(points, 2, n, together);
+    int n_yielded = 0;
+    for (int p = 2; p < n; ++p) {
+        if (points.is_snow(p))
+            sim::yield(points.snow[points.region[p]], alone.F[p], alone.J_plastic[p]);
+        const Eigen::Map<const Mat3> is(together.F[p].m), wanted(alone.F[p].m),
+            was(before.F[p].m);
+        // The nearer two stretches come to cancel, the less is sure about the frame in between.
+        const Vec3 sigma = sim::signed_svd(was).sigma;
+        const double gap = std::max(sigma[1] + sigma[2], 1e-3);
+        CHECK((is - wanted).norm() <= 1e-13 / gap);
+        CHECK(together.J_plastic[p] == Approx(alone.J_plastic[p]).epsilon(1e-13).margin(1e-15));
+        if (!points.is_snow(p))
+            CHECK(is == was);
+        n_yielded += is != was;
+    }
+    CHECK(n_yielded > 300);
+    for (int p = 0; p < 2; ++p)
+        CHECK(together.J_plastic[p] == before.J_plastic[p]);
+}
