@@ -9,8 +9,6 @@ namespace assets {
 
 namespace {
 
-constexpr double border = 2;  // cells around the solid's bounds
-
 /// Quadratic B-spline at offset d in [-1/2, 1/2] from the middle one of three values: weights, and their derivatives.
 struct Spline {
     explicit Spline(double d)
@@ -22,8 +20,10 @@ struct Spline {
 
 }  // namespace
 
-DistanceField::DistanceField(const Solid& solid, double voxel)
-    : low_(solid.min - Vec3::Constant(border * voxel)), voxel_(voxel) {
+DistanceField::DistanceField(const Solid& solid, double voxel, double margin) : voxel_(voxel) {
+    const double border = 2 + std::ceil(margin / voxel);  // cells around the solid's bounds
+    low_ = solid.min - Vec3::Constant(border * voxel);
+    clearance_ = (border - 1) * voxel;
     for (int axis = 0; axis < 3; ++axis)
         n_[axis] = static_cast<std::size_t>(
             std::ceil((solid.max[axis] - low_[axis]) / voxel + border) + 1);
@@ -40,18 +40,27 @@ DistanceField::DistanceField(const Solid& solid, double voxel)
     });
 }
 
+// Let y be the nearest place to x in the box of the grid, b away. The way from x to the solid enters the box in some z,
+// r away from y: |x - z| >= hypot(b, r), as the angle at y is not acute, and from z it is d(y) - r and c, the clearance,
+// at least. The sum of both bounds is least where they meet, r = d(y) - c:   d(x) >= c + hypot(b, d(y) - c).
 double DistanceField::at(const Vec3& x, Vec3& gradient) const {
     const Vec3 scaled = (x - low_) / voxel_;
-    Vec3 inside;
+    Vec3 nearest;
+    for (int axis = 0; axis < 3; ++axis)
+        nearest[axis] = std::clamp(scaled[axis], 1.0, static_cast<double>(n_[axis]) - 2);
+    const double distance = interpolated(nearest, gradient);
+    const double beyond = (scaled - nearest).norm();
+    if (!(beyond > 0))
+        return distance;
+    gradient = (scaled - nearest) / beyond;
+    const double clear = std::min(clearance_, distance);
+    return clear + std::hypot(voxel_ * beyond, distance - clear);
+}
+
+double DistanceField::interpolated(const Vec3& scaled, Vec3& gradient) const {
     int middle[3];
-    for (int axis = 0; axis < 3; ++axis) {
-        inside[axis] = std::clamp(scaled[axis], 1.0, static_cast<double>(n_[axis]) - 2);
-        middle[axis] = static_cast<int>(std::floor(inside[axis] + 0.5));
-    }
-    if (const Vec3 beyond = scaled - inside; beyond.squaredNorm() > 0) {
-        gradient = beyond.normalized();
-        return voxel_ * beyond.norm();
-    }
+    for (int axis = 0; axis < 3; ++axis)
+        middle[axis] = static_cast<int>(std::floor(scaled[axis] + 0.5));
     const Spline a(scaled[0] - middle[0]), b(scaled[1] - middle[1]), c(scaled[2] - middle[2]);
     double distance = 0;
     gradient = Vec3::Zero();

@@ -13,14 +13,17 @@ namespace assets {
 /// are reproduced exactly; edges and curved surfaces lie off by about curvature · voxel²/8.
 class DistanceField {
   public:
-    /// Samples `solid` with cells of `voxel` in its bounds and two cells around.   [m]
-    DistanceField(const Solid& solid, double voxel);
+    /// Samples `solid` with cells of `voxel` in its bounds, two cells and the `margin` around.   [m]
+    DistanceField(const Solid& solid, double voxel, double margin = 0);
 
-    /// Signed distance [m] and its gradient; outside the grid a lower bound of the distance, with the gradient away from
-    /// the solid's bounds.
+    /// Signed distance [m] and its gradient. Where the solid's bounds are further than margin + voxel, a lower bound that
+    /// is larger than that, goes on where the grid ends, and is at least 0.7 of the distance; with a unit vector away
+    /// from the grid.
     double at(const Vec3& x, Vec3& gradient) const;
 
   private:
+    double interpolated(const Vec3& scaled, Vec3& gradient) const;
+
     double value(int i, int j, int k) const {
         return values_[static_cast<std::size_t>(i)
                        + n_[0]
@@ -30,6 +33,8 @@ class DistanceField {
 
     Vec3 low_{0, 0, 0};  // of the grid's first value [m]
     double voxel_ = 0;
+    double clearance_ =
+        0;  // from the solid's bounds to where no values are left to interpolate [m]
     std::array<std::size_t, 3> n_{};  // values along each axis
     std::vector<float> values_;
 };

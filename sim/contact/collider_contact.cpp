@@ -28,6 +28,14 @@ double finest_edge(const std::vector<ContactCorner>& corners) {
     return edge;
 }
 
+/// How far outside a collider a corner touches it at most.   [m]
+double longest_reach(const std::vector<ContactCorner>& corners) {
+    double reach = 0;
+    for (const ContactCorner& corner : corners)
+        reach = std::max(reach, -corner.outside);
+    return reach;
+}
+
 }  // namespace
 
 ColliderContact::ColliderContact(const std::vector<Collider>& colliders,
@@ -36,7 +44,7 @@ ColliderContact::ColliderContact(const std::vector<Collider>& colliders,
     if (corners_.empty())
         return;
     for (const Collider& collider : colliders)
-        colliders_.emplace_back(collider, finest_edge(corners_));
+        colliders_.emplace_back(collider, finest_edge(corners_), longest_reach(corners_));
     for (const ContactCorner& corner : corners_)
         stiffness_.push_back(corner.stiffness);
     grips_.resize(colliders_.size() * corners_.size());

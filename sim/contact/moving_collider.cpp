@@ -98,7 +98,7 @@ assets::Source collider_source(const Collider& collider) {
     return source;
 }
 
-MovingCollider::MovingCollider(const Collider& collider, double resolution)
+MovingCollider::MovingCollider(const Collider& collider, double resolution, double reach)
     : keys_(collider.keys), friction_(collider.friction) {
     if (const auto* plane = std::get_if<PlaneShape>(&collider.shape)) {
         shape_ = *plane;
@@ -107,7 +107,7 @@ MovingCollider::MovingCollider(const Collider& collider, double resolution)
         return;
     }
     const double voxel = resolution / 4;
-    const auto solid = assets::make_solid(collider_source(collider), voxel, 16 * voxel);
+    const auto solid = assets::make_solid(collider_source(collider), voxel, 16 * voxel + reach);
     centre_ = (solid->min + solid->max) / 2;
     thickness_ = (solid->max - solid->min).minCoeff();
     bool has_formula = false;
@@ -121,7 +121,7 @@ MovingCollider::MovingCollider(const Collider& collider, double resolution)
             },
             *shape);
     if (!has_formula)
-        shape_ = std::make_shared<const assets::DistanceField>(*solid, voxel);
+        shape_ = std::make_shared<const assets::DistanceField>(*solid, voxel, reach);
 }
 
 Pose MovingCollider::pose(double time) const {

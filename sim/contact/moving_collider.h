@@ -23,8 +23,9 @@ struct Pose {
 class MovingCollider {
   public:
     /// `resolution`: the scale at which details matter of what has no formula (a mesh, ellipsoids and combined shapes):
-    /// the smallest domain's edge [m]. Throws Error(Input) where a mesh is not closed.
-    MovingCollider(const Collider& collider, double resolution);
+    /// the smallest domain's edge [m]. Up to a distance of `reach` [m] it is as exact outside as inside. Throws
+    /// Error(Input) where a mesh is not closed.
+    MovingCollider(const Collider& collider, double resolution, double reach = 0);
 
     /// Between keys translation is linear and rotation turns evenly about the shape's centre; before the first key and
     /// after the last it stands still.
@@ -35,7 +36,8 @@ class MovingCollider {
         Vec3 normal{0, 0, 1};  // outward of the shape
     };
 
-    /// From a point X in the shape's own frame.
+    /// From a point X in the shape's own frame. Beyond `reach` the gap may be less than the distance, but no less than
+    /// `reach`, and changes by no more than twice the way that a point goes.
     Distance distance(const Vec3& X) const;
 
     /// The smallest extent along the axes, what a fast corner might pass through; infinite for a plane.   [m]

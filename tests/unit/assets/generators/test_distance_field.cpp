@@ -1,6 +1,7 @@
 #include "assets/generators/distance_field.h"
 #include "tests/support/derivative_order.h"
 #include "tests/support/random_fields.h"
+#include "tests/unit/assets/generators/obj_file.h"
 
 #include <catch2/catch.hpp>
 
@@ -54,11 +55,56 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("far outside a distance field tells a distance that is no longer than the true one") {
-    const DistanceField box(*solid_of(assets::Box{{0, 0, 0}, {1, 1, 1}}), voxel);
-    Vec3 gradient;
-    const double distance = box.at({3, 0.5, 0.5}, gradient);
-    CHECK(distance > 1.5);
-    CHECK(distance <= 2);
-    CHECK((gradient - Vec3::UnitX()).norm() < 1e-12);
+namespace {
+
+/// Along rays from `centre`, in the solid, to far outside of the grid; `exact` is the distance.
+template <class Exact>
+void check_rays(const DistanceField& field,
+                const Vec3& centre,
+                double margin,
+                const Exact& exact) {
+    // Of distances whose two curvatures are 1/voxel at most, as a voxel from an edge or a corner.
+    constexpr double interpolation_error = 2 / voxel * voxel * voxel / 8;
+    constexpr double step = voxel / 3;
+    tests::Random random(5);
+    for (int ray = 0; ray < 24; ++ray) {
+        // A third goes along the axes and the diagonals, through faces, edges and corners of the grid.
+        Vec3 direction = tests::random_vector(random);
+        if (ray % 3 == 0)
+            direction = direction.array().round().matrix();
+        if (!(direction.norm() > 0))
+            continue;
+        direction.normalize();
+        Vec3 gradient;
+        double before = field.at(centre, gradient);
+        for (double r = step; r < 2; r += step) {
+            const Vec3 x = centre + r * direction;
+            const double distance = field.at(x, gradient), truth = exact(x);
+            CAPTURE(x.transpose(), distance, truth);
+            REQUIRE(std::abs(distance - before) <= 2 * step);
+            if (truth > -voxel)
+                REQUIRE(distance <= truth + interpolation_error);
+            if (truth > voxel)
+                REQUIRE(distance >= 0.7 * truth - interpolation_error);
+            if (truth > -voxel && truth < margin + voxel)
+                REQUIRE(std::abs(distance - truth) <= interpolation_error);
+            before = distance;
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("where its grid ends a distance field goes on, and tells no more than the distance") {
+    const double margin = GENERATE(0.0, 0.33);
+    const assets::Shape shapes[] = {assets::Box{{-1, -0.5, -0.2}, {1, 0.5, 0.2}},
+                                    assets::Sphere{{0, 0, 0}, 0.6}};
+    for (const assets::Shape& shape : shapes) {
+        const auto exact = [&](const Vec3& x) { return assets::signed_distance(shape, x); };
+        check_rays(DistanceField(*solid_of(shape), voxel, margin), {0, 0, 0}, margin, exact);
+
+        const ObjFile file("supple_field", assets::make_surface({shape, {}}, voxel).mesh);
+        const auto solid = assets::make_solid(file.source(), voxel, 0.7);
+        check_rays(DistanceField(*solid, voxel, margin), {0, 0, 0}, margin, exact);
+    }
 }
