@@ -17,8 +17,8 @@ class DistanceField {
     DistanceField(const Solid& solid, double voxel, double margin = 0);
 
     /// Signed distance [m] and its gradient. Where the solid's bounds are further than margin + voxel, a lower bound that
-    /// is larger than that, goes on where the grid ends, and is at least 0.7 of the distance; with a unit vector away
-    /// from the grid.
+    /// is larger than that, goes on where the grid ends, and is at least 0.7 of the distance (of the band of a level set
+    /// that is narrower); with a unit vector away from the grid.
     double at(const Vec3& x, Vec3& gradient) const;
 
   private:
