@@ -110,7 +110,8 @@ void regions_command(const Request& request) {
     with_places(shot, [&] {
         for (const sim::Body& body : shot.scene.bodies) {
             std::vector<std::string> notes;
-            const auto of_body = rows_of(body, sim::make_lattice(body, &notes));
+            const sim::Slivers slivers = sim::slivers_for(method_of(shot.scene.solver, body));
+            const auto of_body = rows_of(body, sim::make_lattice(body, &notes, slivers));
             rows.insert(rows.end(), of_body.begin(), of_body.end());
             for (const std::string& note : notes)
                 progress.say("note: " + note);

@@ -86,7 +86,8 @@ Assembly::Assembly(const Scene& scene) {
 
 void Assembly::add_body(const Body& body, const SolverOptions& solver) {
     std::vector<std::string> repairs;
-    bodies.emplace_back(body, make_lattice(body, &repairs), n_corners(), solver);
+    Lattice lattice = make_lattice(body, &repairs, slivers_for(method_of(solver, body)));
+    bodies.emplace_back(body, std::move(lattice), n_corners(), solver);
     for (const std::string& repair : repairs)
         notes.push_back("body \"" + body.name + "\": " + repair);
     if (const auto& points = bodies.back().points)

@@ -3,6 +3,7 @@
 #include "assets/base/error.h"
 #include "sim/lattice/links.h"
 #include "sim/lattice/region_report.h"
+#include "sim/lattice/slivers.h"
 #include "sim/lattice/voxels.h"
 
 #include <tbb/parallel_for.h>
@@ -91,6 +92,18 @@ bool lies_with_another(const Lattice& lattice, std::size_t c) {
            || (c + 1 < cells.size() && cells[c + 1] == cells[c]);
 }
 
+/// Whether a corner has domains in all eight directions.
+std::vector<char> inner_corners(const Lattice& lattice) {
+    std::vector<unsigned> directions(lattice.corner_cell.size(), 0);
+    for (const auto& corners : lattice.corners)
+        for (int a = 0; a < 8; ++a)
+            directions[corners[a]] |= 1u << a;
+    std::vector<char> is_inner;
+    for (const unsigned seen : directions)
+        is_inner.push_back(seen == 0xff);
+    return is_inner;
+}
+
 void set_corner_shares(const CubeGrid& grid, const assets::Solid& solid, Lattice& lattice) {
     const std::size_t n = lattice.corner_cell.size();
     lattice.corner_rest.resize(n);
@@ -100,9 +113,12 @@ void set_corner_shares(const CubeGrid& grid, const assets::Solid& solid, Lattice
     tbb::parallel_for(std::size_t{0}, n, [&](std::size_t c) {
         const auto& [x, y, z] = lattice.corner_cell[c];
         lattice.corner_rest[c] = grid.point(x, y, z);
-        lattice.corner_outside[c] =
-            std::max(0.0, solid.signed_distance(lattice.corner_rest[c]));
+        lattice.corner_outside[c] = solid.signed_distance(lattice.corner_rest[c]);
     });
+    const std::vector<char> is_inner = inner_corners(lattice);
+    for (std::size_t c = 0; c < n; ++c)
+        if (is_inner[c])
+            lattice.corner_outside[c] = std::max(0.0, lattice.corner_outside[c]);
     // Of several corners at one place each is outside its own part.
     std::vector<double> squared(n, std::numeric_limits<double>::infinity());
     for (int p = 0; p < lattice.n_domains(); ++p)
@@ -140,13 +156,13 @@ void set_centres(const std::vector<FilledCube>& cubes,
 
 }  // namespace
 
-Lattice make_lattice(const Body& body, std::vector<std::string>* repairs) {
+Lattice make_lattice(const Body& body, std::vector<std::string>* repairs, Slivers slivers) {
     assets::check(body.domain_size > 0, "the domain size is positive");
     LevelMaker maker(body);
     const assets::Solid& solid = maker.solid();
     const RegionLayers regions(body, maker);
     const CubeGrid grid = place_grid(solid, body);
-    const std::vector<FilledCube> cubes = fill_cubes(grid, solid, regions);
+    std::vector<FilledCube> cubes = fill_cubes(grid, solid, regions);
     if (cubes.empty())
         throw assets::Error(
             assets::ErrorKind::Input,
@@ -156,6 +172,8 @@ Lattice make_lattice(const Body& body, std::vector<std::string>* repairs) {
             "body." + body.name + ".domain_size");
     const RegionTally tally = tally_regions(cubes, body.regions.size());
     require_each_region(body, tally, cubes, grid, solid, regions);
+    if (slivers == Slivers::Joined)
+        join_slivers(cubes);
 
     Lattice lattice;
     lattice.edge = grid.edge;

@@ -24,10 +24,11 @@ struct Lattice {
     std::vector<std::array<int, 3>>
         cell;  // (#D) integer coordinates of each domain's lowest corner; not always unique
     std::vector<std::array<int, 8>> corners;  // (#D) its corners
-    std::vector<double> fill;                 // (#D) filled fraction of the cube, (0, 1]
-    std::vector<Vec3> filled_centre;          // (#D) centroid of the filled part [m]
+    std::vector<double>
+        fill;  // (#D) what fills it, over s³, > 0; above 1 with slivers (slivers.h)
+    std::vector<Vec3> filled_centre;     // (#D) centroid of the filled part [m]
     std::vector<double> centre_outside;  // (#D) its signed distance from the body's surface [m]
-    std::vector<int> region;                  // (#D) region with the largest share
+    std::vector<int> region;             // (#D) region with the largest share
     std::vector<double> mu,
         lambda;  // (#D) Lamé parameters of the filled part [Pa], share-weighted
     std::vector<double> density;  // (#D) of the filled part [kg/m³], share-weighted
@@ -36,9 +37,10 @@ struct Lattice {
     std::vector<double> corner_mass;    // (#C) an eighth of each adjacent domain's mass [kg]
     std::vector<double> corner_volume;  // (#C) the same share of filled volume [m³]
     std::vector<double>
-        corner_outside;     // (#C) distance outside the body's surface at rest, >= 0 [m]
-    std::vector<int> part;  // (#D) index in parts; -1 where no other corner lies at
-                            // the place of one of the domain's
+        corner_outside;  // (#C) distance outside the body's surface at rest; < 0 where a sliver
+                         // reaches beyond a corner that has no domains all around [m]
+    std::vector<int> part;          // (#D) index in parts; -1 where no other corner lies at
+                                    // the place of one of the domain's
     std::vector<PartBlocks> parts;  // where in its cube a domain's material lies
     std::vector<double> region_volume, region_mass;  // (#regions) [m³], [kg]
 
@@ -49,11 +51,20 @@ struct Lattice {
     double domain_volume(int p) const { return fill[p] * edge * edge * edge; }
 };
 
+/// What becomes of cubes that a body hardly touches (slivers.h). Points have no corners that could be loose.
+enum class Slivers { Joined, Kept };
+
+inline Slivers slivers_for(Method method) {
+    return method == Method::Mpm ? Slivers::Kept : Slivers::Joined;
+}
+
 /// Voxelises a body. The lattice is aligned with the axes and placed so that a box whose edges are multiples of s is
 /// cut exactly; otherwise it is centred on the body's bounds. Fill fractions and region shares come from regular
 /// samples of the signed distance in cut domains. Throws Error(Input) with the key of a region that selects nothing,
 /// or of a body that fills no domain.
-Lattice make_lattice(const Body& body, std::vector<std::string>* repairs = nullptr);
+Lattice make_lattice(const Body& body,
+                     std::vector<std::string>* repairs = nullptr,
+                     Slivers slivers = Slivers::Joined);
 
 /// Squared distance from a point to what a domain carries: the nearest block of its part, or its cube.   [domain edges²]
 /// `point` in lattice units, (X - origin) / s.

@@ -51,7 +51,7 @@ TEST_CASE("an affine motion is reproduced") {
     std::vector<Vec3> corners;
     for (const Vec3& X : lattice.corner_rest)
         corners.push_back(A * X + b);
-    const std::vector<Vec3> points = random_points(2000);
+    const std::vector<Vec3> points = random_points(2500);
     const std::vector<Binding> bindings = bind_points(lattice, points);
     int reached = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
