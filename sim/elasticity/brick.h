@@ -1,7 +1,7 @@
 // A block of domains in structure-of-arrays form, the unit of work of the elastic kernels.
 #pragma once
 
-#include "sim/materials/lane_vector.h"
+#include "sim/materials/lanes.h"
 #include "sim/scene.h"
 
 #include <array>
@@ -24,11 +24,11 @@ struct Brick {
     std::vector<int> domain;     // (lane_count #batches) domain of each slot, -1 where none
     std::vector<unsigned> laws;  // (#batches) bit m set where a slot has model m
 
-    LaneVector volume;      // (#batches) filled volume V [m³]
-    LaneVector mu, lambda;  // (#batches) [Pa]
-    LaneVector law;         // (#batches) sim::Model as a number
-    LaneVector hourglass;   // (#batches) stiffness of the bilinear hourglass modes [N/m]
-    LaneVector weight;      // (#batches) V mu [J]
+    std::vector<Lanes> volume;      // (#batches) filled volume V [m³]
+    std::vector<Lanes> mu, lambda;  // (#batches) [Pa]
+    std::vector<Lanes> law;         // (#batches) sim::Model as a number
+    std::vector<Lanes> hourglass;   // (#batches) stiffness of the bilinear hourglass modes [N/m]
+    std::vector<Lanes> weight;      // (#batches) V mu [J]
 
     // (45 #batches) ∂P/∂F over mu, upper triangle. The one array that a product of K reads once and cannot keep in a
     // cache is in single precision: Newton's direction is inexact anyway, the gradient that it serves is not.

@@ -74,7 +74,7 @@ class PointEnergy : public GridEnergy {
     std::vector<Matrix3<double>> F_next_;    // (#P) of the last add_gradient()
     std::vector<double> chunk_energy_;       // (#chunks)
     std::vector<PointStiffness> stiffness_;  // (#batches)
-    LaneVector weight_;                      // (#batches) [J]
+    std::vector<Lanes> weight_;                      // (#batches) [J]
 };
 
 }  // namespace sim

@@ -1,8 +1,8 @@
-// The laws at material points, eight points side by side.
+// The laws at material points, four points side by side.
 #pragma once
 
 #include "sim/grid/corner_map.h"
-#include "sim/materials/lane_vector.h"
+#include "sim/materials/lanes.h"
 
 #include <vector>
 
@@ -18,7 +18,7 @@ struct PointsOfSlaves {
     const Matrix3<double>* F_n = nullptr;  // (#P) at the start of the step
 };
 
-/// A range of slaves of one body; batches of eight start at its first.
+/// A range of slaves of one body; batches of four start at its first.
 struct SlaveRange {
     int begin = 0, end = 0;
 
