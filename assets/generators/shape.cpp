@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace assets {
 
@@ -56,10 +57,6 @@ double distance_of(const Torus& torus, const Vec3& x) {
     return std::hypot(at.radius - torus.major, at.height) - torus.minor;
 }
 
-/// Signed distance, but where it is `enough` or more, anything from `enough` up to it: what a smaller distance hides need
-/// not be known.   [m]
-double distance_up_to(const Shape& shape, const Vec3& x, double enough);
-
 /// The nearest point of an ellipsoid of radii e_i to x is y_i = e_i² x_i / (t + e_i²), where t puts it on the surface:
 /// g(t) = Σ (e_i x_i / (t + e_i²))² - 1 = 0. In units of the smallest radius g falls and is convex for t > -1, so Newton's
 /// method climbs to the root from where one term of the sum is 1. Its unknown is t + 1, exact where t comes close to -1.
@@ -96,24 +93,51 @@ double smooth_min(double a, double b, double k) {
     return std::min(a, b) - (k > 0 ? h * h / (4 * k) : 0);
 }
 
+/// What its bounds alone tell, at most the distance.   [m]
+double least_distance(const Operand& operand, const Vec3& x) {
+    return (operand.low - x).cwiseMax(x - operand.high).maxCoeff();
+}
+
+double distance_up_to(const Operand& operand, const Vec3& x, double enough) {
+    const double least = least_distance(operand, x);
+    return least >= enough ? least : assets::distance_up_to(operand.shape, x, enough);
+}
+
+/// Those whose bounds hold x first: they are most likely near, and hide others. Without fillets no order matters.
+double distance_of_sharp_union(const std::vector<Operand>& of, const Vec3& x, double enough) {
+    double distance = std::numeric_limits<double>::infinity();
+    for (const bool holds : {true, false})
+        for (const Operand& operand : of)
+            if ((least_distance(operand, x) <= 0) == holds)
+                distance =
+                    std::min(distance, distance_up_to(operand, x, std::min(enough, distance)));
+    return distance;
+}
+
 double distance_of(const Combination& combination, const Vec3& x, double enough) {
     using Kind = Combination::Kind;
     const double smooth = combination.smooth;
     const bool of_union = combination.kind == Kind::Union;
-    if (of_union)  // fillets take a quarter of `smooth` each
-        enough += static_cast<double>(combination.of.size()) * smooth / 4;
-    double distance = distance_up_to(combination.of.front().shape, x, enough);
+    if (of_union && smooth == 0)
+        return distance_of_sharp_union(combination.of, x, enough);
+    // What is not known exactly must hide behind the rest: a fillet reaches `smooth` and takes a quarter of it, each time.
+    if (of_union)
+        enough += 1.25 * static_cast<double>(combination.of.size()) * smooth;
+    double distance = distance_up_to(combination.of.front(), x, enough);
     for (std::size_t i = 1; i < combination.of.size(); ++i) {
-        const Shape& shape = combination.of[i].shape;
+        const Operand& operand = combination.of[i];
+        if (!of_union && distance >= enough)  // the others can but add to it
+            return distance;
         if (of_union)
-            distance = smooth_min(distance,
-                                  distance_up_to(shape, x, std::min(enough, distance + smooth)),
-                                  smooth);
+            distance =
+                smooth_min(distance,
+                           distance_up_to(operand, x, std::min(enough, distance + smooth)),
+                           smooth);
         else if (combination.kind == Kind::Intersection)
-            distance = -smooth_min(-distance, -distance_up_to(shape, x, enough), smooth);
+            distance = -smooth_min(-distance, -distance_up_to(operand, x, enough), smooth);
         else
             distance =
-                -smooth_min(-distance, distance_up_to(shape, x, smooth - distance), smooth);
+                -smooth_min(-distance, distance_up_to(operand, x, smooth - distance), smooth);
     }
     return distance;
 }
@@ -122,20 +146,8 @@ double distance_of(const Copies& copies, const Vec3& x, double enough) {
     double distance = std::numeric_limits<double>::infinity();
     for (const auto& [Q, t] : copies.to_original)
         distance = std::min(
-            distance,
-            distance_up_to(copies.of.front().shape, Q * x + t, std::min(enough, distance)));
+            distance, distance_up_to(copies.of.front(), Q * x + t, std::min(enough, distance)));
     return distance;
-}
-
-double distance_up_to(const Shape& shape, const Vec3& x, double enough) {
-    return std::visit(
-        [&](const auto& s) {
-            if constexpr (requires { distance_of(s, x, enough); })
-                return distance_of(s, x, enough);
-            else
-                return distance_of(s, x);
-        },
-        shape);
 }
 
 double support_of(const Box& box, const Vec3& direction) {
@@ -197,6 +209,17 @@ double support_of(const Copies& copies, const Vec3& direction) {
 
 }  // namespace
 
+Operand::Operand(Shape of) : shape(std::move(of)) {
+    constexpr double rounding = 1e-9;  // of the extent
+    for (int axis = 0; axis < 3; ++axis) {
+        high[axis] = support(shape, Vec3::Unit(axis));
+        low[axis] = -support(shape, -Vec3::Unit(axis));
+    }
+    const Vec3 wider = rounding * (high - low).cwiseAbs();
+    low -= wider;
+    high += wider;
+}
+
 Copies moved(const Shape& shape, const Vec3& rotate, const Vec3& translate) {
     const Mat3 Q = rotation(rotate).transpose();
     return {{{shape}}, {{Q, -(Q * translate)}}};
@@ -235,6 +258,17 @@ Vec3 apply(const Transform& transform, const Vec3& x) {
 
 Vec3 apply_inverse(const Transform& transform, const Vec3& x) {
     return rotation(transform).transpose() * (x - transform.translate) / transform.scale;
+}
+
+double distance_up_to(const Shape& shape, const Vec3& x, double enough) {
+    return std::visit(
+        [&](const auto& s) {
+            if constexpr (requires { distance_of(s, x, enough); })
+                return distance_of(s, x, enough);
+            else
+                return distance_of(s, x);
+        },
+        shape);
 }
 
 double signed_distance(const Shape& shape, const Vec3& x) {

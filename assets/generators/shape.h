@@ -61,7 +61,10 @@ using Shape =
     std::variant<Box, Sphere, Cylinder, Capsule, Torus, Ellipsoid, Combination, Copies>;
 
 struct Operand {
+    Operand(Shape of);
+
     Shape shape;
+    Vec3 low{0, 0, 0}, high{0, 0, 0};  // bounds, wider than rounding of distances may miss [m]
 };
 
 /// A shape at translate + R x, R = rotation(rotate).
@@ -101,6 +104,10 @@ Mat3 rotation(const Transform& transform);
 /// and copies a lower bound of its size, with the right sign and a slope of at most 1, that is exact where but one of
 /// the surfaces that meet is near.   [m]
 double signed_distance(const Shape& shape, const Vec3& x);
+
+/// Signed distance, but where it is `enough` or more, anything from `enough` up to it: what a smaller distance hides need
+/// not be known.   [m]
+double distance_up_to(const Shape& shape, const Vec3& x, double enough);
 
 /// Support function: max over the shape of direction·x, of combinations an upper bound. Bounds along any direction
 /// follow from it. With a direction of unit length, signed_distance(x) >= direction·x - support everywhere.   [m]

@@ -6,6 +6,7 @@
 #include "assets/mesh/import.h"
 #include "assets/mesh/repair.h"
 
+#include <cmath>
 #include <utility>
 
 namespace assets {
@@ -29,6 +30,12 @@ class ShapeSolid : public Solid {
 
     double signed_distance(const Vec3& x) const override {
         return scale_ * assets::signed_distance(shape_, to_shape_ * (x - translate_));
+    }
+
+    double distance_up_to(const Vec3& x, double enough) const override {
+        constexpr double rounding = 1e-9;  // so that what is more stays so, scaled back
+        const double wanted = (enough + rounding * std::abs(enough)) / scale_;
+        return scale_ * assets::distance_up_to(shape_, to_shape_ * (x - translate_), wanted);
     }
 
   private:

@@ -19,6 +19,11 @@ class Solid {
     /// least `band` with the right sign.   [m]
     virtual double signed_distance(const Vec3& x) const = 0;
 
+    /// The same, but where it is more than `enough`, anything more than `enough` up to it: often cheaper.   [m]
+    virtual double distance_up_to(const Vec3& x, double /*enough*/) const {
+        return signed_distance(x);
+    }
+
     Vec3 min{0, 0, 0}, max{0, 0, 0};  // bounds [m]
 };
 

@@ -57,8 +57,9 @@ class BlockWalk {
             std::sqrt(3.0) * (block.size - 1) / 2 * grid_.edge / m;  // to its outermost samples
         double distance = -std::numeric_limits<double>::infinity();
         if (!known.inside) {
-            distance = solid_.signed_distance(X);
-            if (distance > radius + sampling_.near)
+            const double furthest = radius + sampling_.near;
+            distance = solid_.distance_up_to(X, furthest);
+            if (distance > furthest)
                 return;
             known.inside = distance <= sampling_.whole - radius;
         }

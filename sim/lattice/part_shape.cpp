@@ -147,14 +147,14 @@ FaceMask face_mask(const CubeGrid& grid,
                    int face) {
     FaceMask mask{};
     const int axis = face / 2, along_u = (axis + 1) % 3, along_v = (axis + 2) % 3;
+    const double near = reaches * grid.edge / m;
     std::array<double, 3> at;
     at[axis] = cell[axis] + (face % 2 ? m - 0.5 : 0.5) / m;
     for (int v = 0; v < m; ++v)
         for (int u = 0; u < m; ++u) {
             at[along_u] = cell[along_u] + (u + 0.5) / m;
             at[along_v] = cell[along_v] + (v + 0.5) / m;
-            if (solid.signed_distance(grid.point(at[0], at[1], at[2]))
-                <= reaches * grid.edge / m)
+            if (solid.distance_up_to(grid.point(at[0], at[1], at[2]), near) <= near)
                 mask[v] |= std::uint32_t{1} << u;
         }
     return mask;
@@ -165,10 +165,11 @@ PartBlocks part_blocks(const CubeGrid& grid,
                        const std::array<int, 3>& cell) {
     PartBlocks blocks;
     constexpr int n = PartBlocks::per_edge;
+    const double near = holds * grid.edge / n;
     for_samples({{0, 0, 0}, n}, [&](int x, int y, int z) {
         const Vec3 X = grid.point(
             cell[0] + (x + 0.5) / n, cell[1] + (y + 0.5) / n, cell[2] + (z + 0.5) / n);
-        if (solid.signed_distance(X) <= holds * grid.edge / n)
+        if (solid.distance_up_to(X, near) <= near)
             blocks.set(x, y, z);
     });
     return blocks;

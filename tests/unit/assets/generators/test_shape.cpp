@@ -264,3 +264,38 @@ TEST_CASE("what a combination skips of its parts does not change its distance") 
             }
         }
 }
+
+TEST_CASE("a distance that is less than enough is exact, one that is not lies between") {
+    using Kind = Combination::Kind;
+    std::mt19937 random(8);
+    std::vector<Shape> of = composed();
+    const Shape chain = Combination{// fillets of fillets
+                                    Kind::Union,
+                                    {{Sphere{{-1, 0, 0}, 0.5}},
+                                     {Sphere{{-0.4, 0.3, 0}, 0.4}},
+                                     {block},
+                                     {Sphere{{1, 0, 0}, 0.6}}},
+                                    0.6};
+    of.push_back(chain);
+    of.push_back(
+        Combination{Kind::Union, {{chain}, {of[4]}, {moved(of[2], {1, 0, 0}, {0, 1, 0})}}, 0});
+    of.push_back(Combination{Kind::Difference, {{chain}, {of[6]}}, 0.2});
+    std::uniform_real_distribution<double> sizes(-0.5, 1.5);
+    int n_exact = 0, n_less = 0;
+    for (const Shape& shape : of)
+        for (int i = 0; i < 4000; ++i) {
+            const Vec3 x = random_point(random);
+            const double exact = signed_distance(shape, x), enough = sizes(random),
+                         found = distance_up_to(shape, x, enough);
+            if (exact < enough) {
+                REQUIRE(found == exact);
+                ++n_exact;
+            } else {
+                REQUIRE(found >= enough);
+                REQUIRE(found <= exact + rounding);
+                n_less += found < exact;
+            }
+        }
+    CHECK(n_exact > 1000);
+    CHECK(n_less > 1000);
+}
