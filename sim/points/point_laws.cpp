@@ -172,10 +172,6 @@ ALWAYS_INLINE void see_from_gradients(const Matrix3<Lanes>& F, const Lanes* C, F
     }
 }
 
-}  // namespace
-
-namespace {
-
 /// Ψ and V P F_nᵀ at F.
 ALWAYS_INLINE Matrix3<Lanes> stresses(const Batch& batch, const Matrix3<Lanes>& F, Lanes& psi) {
     Matrix3<Lanes> P{};

@@ -1,7 +1,6 @@
 #include "assets/base/error.h"
 #include "sim/simulation.h"
 #include "tests/support/bar_scene.h"
-#include "tests/unit/assets/generators/obj_file.h"
 
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
@@ -61,36 +60,6 @@ TEST_CASE("a restored checkpoint of points goes on to the same bits") {
                moved = !(whole.checkpoint() == first.checkpoint());
     CHECK(goes_on);
     CHECK(moved);
-}
-
-TEST_CASE("a restored checkpoint of what a moving mesh pushes goes on to the same bits") {
-    // The ball comes to the end of the bar from the side, so that points are everywhere around its bounds.
-    const assets::Sphere ball{{0.4, 0, 0.2}, 0.1};
-    const ObjFile file("supple_state", assets::make_surface({ball, {}}, 0.025).mesh);
-    tests::BarOptions options;
-    options.n_domains = {8, 3, 3};
-    options.segment_ends = {3, 5};
-    options.domain_size = 0.058;
-    options.solver.dt = 2e-3;
-    options.solver.method = sim::Method::Mpm;  // its points touch before they are there
-    sim::Scene scene = tests::bar_scene(options);
-    sim::Collider collider{assets::MeshFile{file.path()}, {false, 0.3}};
-    collider.keys = {{0, {0, 0, 0}, {0, 0, 0}}, {0.1, {0, 0, -0.1}, {0, 1, 0}}};
-    scene.colliders.push_back(collider);
-    sim::Simulation whole(scene, frame_time), first(scene, frame_time),
-        second(scene, frame_time);
-    whole.advance_to(0.03);
-    first.advance_to(0.03);
-    second.restore(first.checkpoint());
-    whole.advance_to(0.06);
-    second.advance_to(0.06);
-    scene.colliders.clear();
-    sim::Simulation untouched(scene, frame_time);
-    untouched.advance_to(0.06);
-    const bool goes_on = whole.checkpoint() == second.checkpoint(),
-               touched = !(whole.checkpoint() == untouched.checkpoint());
-    CHECK(goes_on);
-    CHECK(touched);
 }
 
 TEST_CASE("one thread and two give the same bits") {
