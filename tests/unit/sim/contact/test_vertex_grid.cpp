@@ -1,11 +1,13 @@
 #include "sim/contact/domain_hull.h"
 #include "sim/contact/own_frame.h"
-#include "sim/contact/vertex_block.h"
+#include "sim/contact/vertex_grid.h"
 #include "tests/support/box_body.h"
 #include "tests/support/random_fields.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+
+#include <algorithm>
 
 using sim::Field;
 using sim::Vec3p;
@@ -16,22 +18,18 @@ constexpr double edge = 0.05;
 
 }  // namespace
 
-TEST_CASE("a vertex block finds the strangers near a box that a loop over vertices finds") {
+TEST_CASE("a grid of vertices finds the strangers near a box that a loop over vertices finds") {
     const sim::Body body = tests::box_body({4, 3, 3}, edge);
     const sim::Lattice lattice = sim::make_lattice(body);
     const int begin = 5;
     const sim::ContactSurface surface(body, lattice, begin, 0);
-    std::vector<int> some;
-    for (int v = 1; v < static_cast<int>(surface.vertices.size()); v += 2)
-        some.push_back(v);
-    some.resize(some.size() / 4 * 4 + 3);  // not whole fours
-    sim::VertexBlock block(surface, some);
+    sim::VertexGrid grid(surface);
 
     tests::Random random(3);
     Field corners;
     for (const Vec3& X : lattice.corner_rest)
         corners.push_back(sim::padded(X + tests::random_vector(random, 0.2 * edge)));
-    block.place(surface, corners);
+    grid.place(surface, corners);
     Field all(begin);
     all.insert(all.end(), corners.begin(), corners.end());
     std::size_t n_found = 0;
@@ -44,24 +42,21 @@ TEST_CASE("a vertex block finds the strangers near a box that a loop over vertic
         box.add(sim::padded(middle + half));
         const double within = 0.6 * edge, least = 1.7 * edge;
         std::vector<int> found, expected;
-        block.for_strangers_near(
-            box, within, centre, least, [&](int k) { found.push_back(block.vertices[k]); });
-        for (const int v : some) {
+        grid.for_strangers_near(box, within, centre, least, [&](int v) { found.push_back(v); });
+        for (const int v : surface.all_vertices()) {
             const Vec3 from_middle = surface.vertices[v].position(all) - middle;
             if ((from_middle.cwiseAbs() - half).maxCoeff() < within
                 && (surface.vertices[v].rest - centre).norm() >= least)
                 expected.push_back(v);
         }
+        std::sort(found.begin(), found.end());
         CHECK(found == expected);
         n_found += found.size();
     }
     CHECK(n_found > 100);
-    for (std::size_t k = 0; k < some.size(); ++k) {
-        const Vec3p at = block.at(static_cast<int>(k));
-        CHECK(block.bounds.holds(at));
+    for (const int v : surface.all_vertices())
         // Sums in another order.
-        CHECK((sim::unpadded(at) - surface.vertices[some[k]].position(all)).norm() <= 1e-14);
-    }
+        CHECK((sim::unpadded(grid.at(v)) - surface.vertices[v].position(all)).norm() <= 1e-14);
 }
 
 TEST_CASE("a hull's gap is that along the axis or diagonal that parts a point most") {
