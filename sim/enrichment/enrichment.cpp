@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <immintrin.h>
 #include <map>
 
 namespace sim {
@@ -25,8 +26,10 @@ struct StretchBounds {
 
 constexpr StretchBounds enter{0.5, 0.35}, leave{0.6, 0.45};
 
+constexpr Vec3p to_all = {1, 1, 1, 0};
+
 Vec3p floor_of(const Vec3p& v) {
-    return Vec3p{std::floor(v[0]), std::floor(v[1]), std::floor(v[2]), 0};
+    return _mm256_floor_pd(v);
 }
 
 void meet(int& seen, int region) {
@@ -104,19 +107,24 @@ Enrichment::Enrichment(const Lattice& lattice,
         is_thin_ = thin_domains(lattice, least_cells / 2 * cell_size / lattice.edge);
     else
         is_thin_.assign(lattice.n_domains(), 0);
+    for (int p = 0; p < lattice.n_domains(); ++p)
+        if (is_boundary_[p] || criteria_.mixed_cell)
+            marking_.push_back(p);
 }
 
 void Enrichment::update(const Lattice& lattice, const Vec3p* corners, char* free) {
     const bool by_cells = criteria_.interface || criteria_.mixed_cell;
     if (!by_cells && !criteria_.thin && !criteria_.strain)
         return;
-    if (by_cells)
-        mark_cells(lattice, corners);
+    if (by_cells) {
+        find_centres(lattice, corners);
+        mark_cells(lattice);
+    }
     for (int p = 0; p < lattice.n_domains(); ++p) {
         const bool was = enriched_[p];
         bool is = is_thin_[p];
         if (by_cells) {
-            const Cell& cell = cell_at(centres_[p]);
+            const Cell& cell = cells_[index_of(floor_of(centres_[p]))];
             is |= cell.boundary || (was && cell.near_boundary);
             if (criteria_.mixed_cell)
                 is |= cell.region == several || (was && cell.near_region == several);
@@ -133,7 +141,7 @@ void Enrichment::update(const Lattice& lattice, const Vec3p* corners, char* free
     }
 }
 
-void Enrichment::mark_cells(const Lattice& lattice, const Vec3p* corners) {
+void Enrichment::find_centres(const Lattice& lattice, const Vec3p* corners) {
     const int n = lattice.n_domains();
     centres_.resize(n);
     Vec3p low{}, high{};
@@ -141,43 +149,47 @@ void Enrichment::mark_cells(const Lattice& lattice, const Vec3p* corners) {
         Vec3p sum{};
         for (const int c : lattice.corners[p])
             sum += corners[c];
-        centres_[p] = sum * (0.125 / cell_size_);
-        const Vec3p cell = floor_of(centres_[p]);
+        const Vec3p centre = sum * (0.125 / cell_size_);
         if (p == 0)
-            low = high = cell;
-        low = cell < low ? cell : low;
-        high = cell > high ? cell : high;
+            low = high = centre;
+        low = centre < low ? centre : low;
+        high = centre > high ? centre : high;
+        centres_[p] = centre;
     }
-    low_ = low - Vec3p{1, 1, 1, 0};  // the margin may reach one cell further
-    size_ = high - low + Vec3p{3, 3, 3, 0};
-    if (!(size_[0] * size_[1] * size_[2] < most_cells))
+    low_ = floor_of(low) - to_all;  // the margin may reach one cell further
+    const Vec3p size = floor_of(high) - low_ + 2 * to_all;
+    if (!(size[0] * size[1] * size[2] < most_cells))
         throw assets::Error(
             assets::ErrorKind::Diverged,
             "a body spreads over more background cells than can be held; it has flown apart");
-    cells_.assign(static_cast<std::size_t>(size_[0] * size_[1] * size_[2]), Cell{});
-    for (int p = 0; p < n; ++p)
-        if (is_boundary_[p] || criteria_.mixed_cell)
-            mark(centres_[p], lattice.region[p], is_boundary_[p]);
+    step_ = {1, int(size[0]), int(size[0] * size[1])};
+    cells_.assign(static_cast<std::size_t>(size[0] * size[1] * size[2]), Cell{});
 }
 
-Enrichment::Cell& Enrichment::cell_at(const Vec3p& centre) {
-    const Vec3p local = floor_of(centre) - low_;
-    return cells_[static_cast<std::size_t>(local[0]
-                                           + size_[0] * (local[1] + size_[1] * local[2]))];
+int Enrichment::index_of(const Vec3p& cell) const {
+    const Vec3p local = cell - low_;
+    return int(local[0]) + step_[1] * int(local[1]) + step_[2] * int(local[2]);
 }
 
-void Enrichment::mark(const Vec3p& centre, int region, bool is_boundary) {
-    Cell& own = cell_at(centre);
-    meet(own.region, region);
-    own.boundary |= is_boundary;
-    const Vec3p first = floor_of(centre - margin), last = floor_of(centre + margin);
-    for (double z = first[2]; z <= last[2]; ++z)
-        for (double y = first[1]; y <= last[1]; ++y)
-            for (double x = first[0]; x <= last[0]; ++x) {
-                Cell& near = cell_at(Vec3p{x, y, z, 0});
-                meet(near.near_region, region);
-                near.near_boundary |= is_boundary;
-            }
+void Enrichment::mark_cells(const Lattice& lattice) {
+    for (const int p : marking_) {
+        const int region = lattice.region[p];
+        const bool is_boundary = is_boundary_[p];
+        const Vec3p& centre = centres_[p];
+        Cell& own = cells_[index_of(floor_of(centre))];
+        meet(own.region, region);
+        own.boundary |= is_boundary;
+        const Vec3p lowest = floor_of(centre - margin * to_all),
+                    extent = floor_of(centre + margin * to_all) - lowest;
+        const int first = index_of(lowest);
+        for (int z = 0; z <= int(extent[2]); ++z)
+            for (int y = 0; y <= int(extent[1]); ++y)
+                for (int x = 0; x <= int(extent[0]); ++x) {
+                    Cell& near = cells_[first + x + step_[1] * y + step_[2] * z];
+                    meet(near.near_region, region);
+                    near.near_boundary |= is_boundary;
+                }
+    }
 }
 
 }  // namespace sim

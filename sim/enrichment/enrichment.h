@@ -4,6 +4,7 @@
 #include "sim/base/field.h"
 #include "sim/lattice/lattice.h"
 
+#include <array>
 #include <vector>
 
 namespace sim {
@@ -36,8 +37,8 @@ class Enrichment {
     void restore(std::vector<char> enriched) { enriched_ = std::move(enriched); }
 
   private:
-    void mark_cells(const Lattice& lattice, const Vec3p* corners);
-    void mark(const Vec3p& centre, int region, bool is_boundary);
+    void find_centres(const Lattice& lattice, const Vec3p* corners);
+    void mark_cells(const Lattice& lattice);
 
     EnrichmentCriteria criteria_;
     double cell_size_ = 0;
@@ -50,9 +51,11 @@ class Enrichment {
         bool boundary = false, near_boundary = false;
     };
 
-    Cell& cell_at(const Vec3p& centre);
+    int index_of(const Vec3p& cell) const;
 
-    Vec3p low_{}, size_{};
+    std::vector<int> marking_;  // domains that decide about the cells around them
+    Vec3p low_{};
+    std::array<int, 3> step_{};  // from a cell to the next along x, y and z
     std::vector<Cell> cells_;
     std::vector<Vec3p> centres_;  // (#D) in cells
 };
