@@ -4,6 +4,7 @@
 #include "sim/grid/kernel.h"
 
 #include <cmath>
+#include <immintrin.h>
 
 namespace sim {
 
@@ -12,7 +13,11 @@ namespace {
 constexpr double most_cells = 1 << 28;
 
 Vec3p floor_of(const Vec3p& v) {
-    return Vec3p{std::floor(v[0]), std::floor(v[1]), std::floor(v[2]), 0};
+    return _mm256_floor_pd(v);
+}
+
+Vec3p in_all_axes(double v) {
+    return Vec3p{v, v, v, 0};
 }
 
 }  // namespace
@@ -87,7 +92,7 @@ CornerMap::Box CornerMap::box_of_slaves(const Field& corners,
     for (int c = body.begin; c < body.end; ++c) {
         if (dof_of_corner_[c] >= 0)
             continue;
-        const Vec3p cell = floor_of(corners[c] * inverse_size - shift);
+        const Vec3p cell = floor_of(corners[c] * inverse_size - in_all_axes(shift));
         if (slave_order_.empty())
             box.low = high = cell;
         box.low = cell < box.low ? cell : box.low;
@@ -115,7 +120,8 @@ void CornerMap::sort_slaves(const Field& corners,
     cell_start_.assign(n_cells + 1, 0);
     cell_of_slave_.resize(slave_order_.size());
     for (std::size_t k = 0; k < slave_order_.size(); ++k) {
-        const Vec3p local = floor_of(corners[slave_order_[k]] * inverse_size - shift) - box.low;
+        const Vec3p& x = corners[slave_order_[k]];
+        const Vec3p local = floor_of(x * inverse_size - in_all_axes(shift)) - box.low;
         const int cell = int(local[0]) + box.n[0] * (int(local[1]) + box.n[1] * int(local[2]));
         cell_of_slave_[k] = cell;
         ++cell_start_[cell + 1];
@@ -140,7 +146,7 @@ void CornerMap::sort_slaves(const Field& corners,
         slave_of_corner_[slave_order_[k]] = slave;
         // Where the product is not rounded before the difference (a fused instruction) a point on a node may come out a
         // rounding below it: its weights would be negative, and a node's mass the difference of such.
-        const Vec3p local = scaled - floor_of(scaled - shift), least = Vec3p{} + shift;
+        const Vec3p least = in_all_axes(shift), local = scaled - floor_of(scaled - least);
         slave_local_[slave] = local > least ? local : least;
     }
 }
@@ -150,10 +156,11 @@ void CornerMap::keep_trilinear_weights(Part& part) {
     const int first = groups_[part.first_group].begin,
               last = static_cast<int>(slave_local_.size());
     part.first_trilinear = static_cast<int>(trilinear_weights_.size()) - first;
+    trilinear_weights_.resize(part.first_trilinear + last);
     for (int s = first; s < last; ++s) {
         Vec3p w[2];
         Spline<1>::weights(slave_local_[s], w);
-        std::array<double, 8>& products = trilinear_weights_.emplace_back();
+        std::array<double, 8>& products = trilinear_weights_[part.first_trilinear + s];
         for (int a = 0; a < 8; ++a)
             products[a] = w[a & 1][0] * (w[a >> 1 & 1][1] * w[a >> 2][2]);
     }
@@ -162,22 +169,23 @@ void CornerMap::keep_trilinear_weights(Part& part) {
 void CornerMap::number_nodes(const Box& box, int n, Part& part) {
     const int per_group = n * n * n;
     const std::array<int, 3> size = {box.n[0] + n - 1, box.n[1] + n - 1, box.n[2] + n - 1};
-    const auto index = [&](int i, int j, int l) { return i + size[0] * (j + size[1] * l); };
     node_of_.assign(static_cast<std::size_t>(size[0]) * size[1] * size[2], -1);
     group_nodes_.resize(part.first_entry + base_.size() * per_group);
-    for (std::size_t k = 0; k < base_.size(); ++k) {
-        const int i = base_[k] % box.n[0], j = base_[k] / box.n[0] % box.n[1],
-                  l = base_[k] / (box.n[0] * box.n[1]);
-        for (int a = 0; a < per_group; ++a) {
-            const int x = i + a % n, y = j + a / n % n, z = l + a / (n * n);
-            int& node = node_of_[index(x, y, z)];
-            if (node < 0) {
-                node = n_nodes_++;
-                dof_position_.push_back((box.low + Vec3p{double(x), double(y), double(z), 0})
-                                        * part.cell_size);
-            }
-            group_nodes_[part.first_entry + k * per_group + a] = n_free() + node;
-        }
+    int* group_node = group_nodes_.data() + part.first_entry;
+    for (const int base : base_) {
+        const int i = base % box.n[0], j = base / box.n[0] % box.n[1],
+                  l = base / (box.n[0] * box.n[1]);
+        for (int z = l; z < l + n; ++z)
+            for (int y = j; y < j + n; ++y)
+                for (int x = i; x < i + n; ++x) {
+                    int& node = node_of_[x + size[0] * (y + size[1] * z)];
+                    if (node < 0) {
+                        node = n_nodes_++;
+                        const Vec3p from_lowest = {double(x), double(y), double(z), 0};
+                        dof_position_.push_back((box.low + from_lowest) * part.cell_size);
+                    }
+                    *group_node++ = n_free() + node;
+                }
     }
 }
 
