@@ -64,8 +64,11 @@ bool Stepper::try_equilibrium(State& state,
     options.tolerance = static_tolerance;
     options.first_forcing = 0.1;
     options.max_iterations = 200;
-    if (!surfaces_.empty())
-        surfaces_.begin_step({state.x, state.v, state.top_speed, state.contacts}, state.x, 0);
+    if (!surfaces_.empty()) {
+        const SurfaceContact::Start start = {state.x, state.v, state.top_speed, state.contacts};
+        surfaces_.see(start);
+        surfaces_.begin_step(start, state.x, 0);
+    }
     const bool solved = minimize_with_contact(options, contact_passes);
     summary = summary_;
     if (!solved)

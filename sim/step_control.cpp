@@ -22,13 +22,14 @@ void Stepper::advance(State& state, double end, double dt) {
     while (state.time < end) {
         // Equal steps to the end, so that the last one is no sliver.
         const double remaining = end - state.time;
+        const SurfaceContact::Start start = {state.x, state.v, state.top_speed, state.contacts};
+        surfaces_.see(start);
         const double longest = is_explicit ? std::min(dt, explicit_limit()) : dt;
         const double allowed =
             std::min({longest,
                       state.dt_limit,
                       colliders_.largest_step(state.x, state.v, state.time, longest),
-                      surfaces_.largest_step(
-                          {state.x, state.v, state.top_speed, state.contacts}, longest),
+                      surfaces_.largest_step(start, longest),
                       relative_limit(state)});
         const double n = std::max(1.0, std::ceil(remaining / allowed - rounding));
         const double length = remaining / n;

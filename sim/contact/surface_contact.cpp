@@ -107,7 +107,6 @@ bool SurfaceContact::may_fold(const Pair& pair, const Start& start, double way, 
 double SurfaceContact::largest_step(const Start& start, double dt) {
     if (empty())
         return infinity;
-    extents_ = extents(start.x, start.v);
     double limit = infinity;
     for (const Pair& pair : pairs_) {
         const double apart = distance(pair, extents_);
@@ -127,7 +126,6 @@ void SurfaceContact::begin_step(const Start& start, const Field& x_expected, dou
     x_n_ = start.x;
     held_ = start.held;
     dt_ = dt;
-    extents_ = extents(start.x, start.v);
     for (Pair& pair : pairs_) {
         const double edge = bodies_[pair.of_domains].lattice->edge, least = least_margin * edge;
         // Speeds that widen no margin, of a pair that is not within it, change nothing.

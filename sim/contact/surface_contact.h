@@ -46,6 +46,9 @@ class SurfaceContact : public ContactEnergy {
         const std::vector<HeldContact>& held;  // ascending
     };
 
+    /// Looks where bodies are and how they move: before largest_step() and begin_step() of the same start.
+    void see(const Start& start) { extents_ = extents(start.x, start.v); }
+
     /// The longest step that moves no vertex further into a body that it may touch than a part of its thickness.   [s]
     double largest_step(const Start& start, double dt);
 
