@@ -17,7 +17,7 @@ namespace sim {
 /// Rows of slots run along the lattice's x, y or z, the brick's axes being the lattice's in turn: a rotation, which no
 /// isotropic law sees. F and what follows from it are in the brick's axes.
 struct Brick {
-    int n_local = 0;             // local corners, padded so that every batch stays inside
+    int n_local = 0;             // local corners, padded: whole batches that stay inside
     int first_local = 0;         // of this brick among those of all bricks
     std::array<int, 8> step{};   // local index offset of corner a
     std::vector<int> batch;      // first slot of each batch that holds a domain

@@ -4,6 +4,7 @@
 #include "sim/elasticity/places.h"
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 
 namespace sim {
@@ -18,6 +19,30 @@ double hourglass_stiffness(const Lattice& lattice, int p) {
     const double mu = lattice.mu[p], lambda = lattice.lambda[p];
     const double nu = lambda / (2 * (lambda + mu));
     return (1 + nu) / 2 * mu * lattice.domain_volume(p) / (12 * lattice.edge * lattice.edge);
+}
+
+Lanes load_lanes(const double* values) {
+    Lanes lanes;
+    std::memcpy(&lanes, values, sizeof lanes);
+    return lanes;
+}
+
+/// Four corners side by side per component from the components side by side per corner, and back.
+static_assert(lane_count == 4);
+using FourVectors = std::array<Vec3p, 4>;
+
+[[gnu::always_inline]] inline FourVectors transposed(const FourVectors& v) {
+    using Order [[gnu::vector_size(32)]] = long long;
+    constexpr Order even = {0, 4, 2, 6}, odd = {1, 5, 3, 7}, low = {0, 1, 4, 5},
+                    high = {2, 3, 6, 7};
+    const Vec3p even01 = __builtin_shuffle(v[0], v[1], even),
+                odd01 = __builtin_shuffle(v[0], v[1], odd),
+                even23 = __builtin_shuffle(v[2], v[3], even),
+                odd23 = __builtin_shuffle(v[2], v[3], odd);
+    return {__builtin_shuffle(even01, even23, low),
+            __builtin_shuffle(odd01, odd23, low),
+            __builtin_shuffle(even01, even23, high),
+            __builtin_shuffle(odd01, odd23, high)};
 }
 
 /// Divides the domains of a box of cells so that in each layer a place has one corner at most: a brick has one place for
@@ -116,7 +141,7 @@ void Elasticity::fill_brick(const Lattice& lattice,
     const int n_corners = places.count;
     for (int a = 0; a < 8; ++a)
         brick.step[a] = places.step_to_corner(a);
-    brick.n_local = n_corners + lane_count;
+    brick.n_local = (n_corners / lane_count + 2) * lane_count;  // whole batches
     brick.first_local = static_cast<int>(corner_of_local_.size());
     corner_of_local_.resize(brick.first_local + brick.n_local, -1);
 
@@ -165,35 +190,41 @@ void Elasticity::fill_brick(const Lattice& lattice,
 BrickFields Elasticity::Scratch::fields(int n_local) {
     BrickFields fields;
     for (int i = 0; i < 3; ++i) {
-        for (auto* array : {&in[i], &out[i], &out_right[i]})
-            array->resize(n_local);
+        in[i].resize(n_local);
+        out[i].resize(n_local);
+        out_right[i].resize(n_local + 1);
         fields.in[i] = in[i].data();
         fields.out[i] = out[i].data();
-        fields.out_right[i] = out_right[i].data();
+        fields.out_right[i] = out_right[i].data() + 1;
     }
     return fields;
 }
 
 void Elasticity::load(const Brick& brick, const Vec3p* values, Scratch& scratch) const {
+    const Vec3p none{};
     const int* corner = &corner_of_local_[brick.first_local];
-    for (int l = 0; l < brick.n_local; ++l) {
-        const Vec3p value = corner[l] >= 0 ? values[corner[l]] : Vec3p{};
+    for (int l = 0; l < brick.n_local; l += lane_count) {
+        FourVectors of_corners;
+        for (int k = 0; k < lane_count; ++k)
+            of_corners[k] = corner[l + k] >= 0 ? values[corner[l + k]] : none;
+        const FourVectors of_components = transposed(of_corners);
         for (int i = 0; i < 3; ++i)
-            scratch.in[i][l] = value[i];
+            std::memcpy(&scratch.in[i][l], &of_components[i], sizeof(Lanes));
     }
 }
 
 void Elasticity::store(const Brick& brick, const Scratch& scratch, Vec3p* values) const {
-    const auto& [in, out, right] = scratch;
     const int* corner = &corner_of_local_[brick.first_local];
     const char* adds = &adds_[brick.first_local];
-    for (int l = 0; l < brick.n_local; ++l) {
-        if (corner[l] < 0)
-            continue;
-        Vec3p sum{out[0][l], out[1][l], out[2][l], 0};
-        if (l > 0)
-            sum += Vec3p{right[0][l - 1], right[1][l - 1], right[2][l - 1], 0};
-        values[corner[l]] = adds[l] ? values[corner[l]] + sum : sum;
+    for (int l = 0; l < brick.n_local; l += lane_count) {
+        FourVectors of_components{};
+        for (int i = 0; i < 3; ++i)
+            of_components[i] =
+                load_lanes(&scratch.out[i][l]) + load_lanes(&scratch.out_right[i][l]);
+        const FourVectors of_corners = transposed(of_components);
+        for (int k = 0; k < lane_count; ++k)
+            if (const int c = corner[l + k]; c >= 0)
+                values[c] = adds[l + k] ? values[c] + of_corners[k] : of_corners[k];
     }
 }
 
@@ -211,7 +242,7 @@ double Elasticity::for_bricks(const Vec3p* in, Vec3p* out, const Kernel& kernel)
             if (out != nullptr)
                 for (auto* arrays : {&scratch.out, &scratch.out_right})
                     for (auto& array : *arrays)
-                        std::fill_n(array.begin(), brick.n_local, 0.0);
+                        std::fill(array.begin(), array.end(), 0.0);
             const double value = kernel(brick, fields);
             if (out != nullptr)
                 store(brick, scratch, out);

@@ -32,7 +32,9 @@ class Elasticity : public ElasticEnergy {
   private:
     /// A brick's corners and sums as its kernels want them, small enough for the second-level cache.
     struct Scratch {
-        std::array<std::vector<double>, 3> in, out, out_right;  // (#local) per component
+        // Per component, #local. A corner's share of out_right is one place further than in
+        // BrickFields: beside that of `out`.
+        std::array<std::vector<double>, 3> in, out, out_right;
 
         BrickFields fields(int n_local);
     };
