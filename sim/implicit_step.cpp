@@ -59,9 +59,10 @@ bool Stepper::solve_step(const State& state, double dt, Scheme scheme) {
         options.line_search = false;
         options.tolerance = semi_implicit_forcing;
     }
-    map_.move(potential_.step().x_n, dt_hat_, q_, x_end_);
-    if (!surfaces_.empty())
+    if (!surfaces_.empty()) {
+        map_.move(potential_.step().x_n, dt_hat_, q_, x_end_);
         surfaces_.begin_step({state.x, state.v, state.top_speed, state.contacts}, x_end_, dt);
+    }
     if (!minimize_with_contact(options,
                                scene_.solver.steps == Steps::SemiImplicit ? 1 : contact_passes))
         return false;
@@ -128,14 +129,27 @@ void Stepper::keep_inner_force(State& state) {
     Field& change = q_;
     for (int i = 0; i < map_.n_dofs(); ++i)
         change[i] = (q_[i] - step.q_tilde[i]) * step.is_free[i];
-    const Field& gained = map_.applied(change, corner_);
     const double damped = 1 + scene_.solver.damping * dt_hat_;
-    for (const AssembledBody& body : assembly_.bodies) {
-        const bool is_short = !body.points && dt_hat_ * body.highest_frequency < short_step;
-        for (int c = body.begin; c < body.end; ++c)
-            state.inner_force[c] = is_short && !free_[c]
-                                       ? -potential_.corner_gradient()[c]
-                                       : damped / dt_hat_ * assembly_.mass[c] * gained[c];
+    const auto force = [&](int c, const Vec3p& gained) {
+        return damped / dt_hat_ * assembly_.mass[c] * gained;
+    };
+    for (int k = 0; k < map_.n_free(); ++k) {
+        const int c = map_.free_corner()[k];
+        state.inner_force[c] = force(c, change[k]);
+    }
+    const std::vector<AssembledBody>& bodies = assembly_.bodies;
+    const auto is_short = [&](const AssembledBody& body) {
+        return !body.points && dt_hat_ * body.highest_frequency < short_step;
+    };
+    if (!std::all_of(bodies.begin(), bodies.end(), is_short))
+        map_.apply_to_slaves(change, corner_);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
+        for (int s = slaves.begin; s < slaves.end; ++s) {
+            const int c = map_.slave_corner()[s];
+            state.inner_force[c] =
+                is_short(bodies[b]) ? -potential_.corner_gradient()[c] : force(c, corner_[c]);
+        }
     }
     if (state.last_dt == 0)
         state.inner_force_before = state.inner_force;

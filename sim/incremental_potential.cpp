@@ -14,6 +14,19 @@ constexpr int chunk = 8192;
 constexpr double rounding =
     1e-14;  // of a position after the sums of a step, relative to the largest coordinate
 
+/// Of all vectors, disregarding signs.
+double largest_entry(const Field& field) {
+    Vec3p low{}, high{};
+    for (const Vec3p& v : field) {
+        low = v < low ? v : low;
+        high = v > high ? v : high;
+    }
+    double largest = 0;
+    for (int k = 0; k < 3; ++k)
+        largest = std::max({largest, -low[k], high[k]});
+    return largest;
+}
+
 }  // namespace
 
 /// act(elasticity, first corner) for bodies of domains; zero in `sums` for points.
@@ -77,14 +90,11 @@ void IncrementalPotential::linearize(const Field& q, bool project) {
     const int n = static_cast<int>(q.size());
     corner_diagonal_.resize(x_.size());
     corner_product_.resize(x_.size());
-    double largest_coordinate = 0;
     for_elastic(corner_diagonal_, [&](ElasticEnergy& elasticity, int begin) {
         elasticity.linearize(&x_[begin], project);
         elasticity.diagonal(&corner_diagonal_[begin]);
     });
-    for (const Vec3p& x : x_)
-        for (int k = 0; k < 3; ++k)
-            largest_coordinate = std::max(largest_coordinate, std::abs(x[k]));
+    const double largest_coordinate = largest_entry(x_);
     for (ContactEnergy* contact : contacts_) {
         contact->linearize(x_);
         contact->add_diagonal(corner_diagonal_);

@@ -275,10 +275,12 @@ void Stepper::end_on_targets() {
 void Stepper::commit(State& state, double dt) {
     // Corner velocities: the new ones of the degrees of freedom, and for slaved corners what the grid could not see
     // of the old ones (FLIP).
-    const Field& seen = map_.applied(q_n_, corner_);
+    Field& seen = corner_;
+    map_.apply_to_slaves(q_n_, seen);
     const double keep = share_kept(dt);
-    for (std::size_t c = 0; c < state.x.size(); ++c)
-        state.v[c] = moved_[c] + (free_[c] ? Vec3p{} : keep * (v_hat_[c] - seen[c]));
+    state.v = moved_;
+    for (const int c : map_.slave_corner())
+        state.v[c] += keep * (v_hat_[c] - seen[c]);
     std::swap(state.x, x_end_);
     end_step(state, dt);
 }

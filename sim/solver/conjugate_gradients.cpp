@@ -68,6 +68,8 @@ LinearSummary solve_linear(Potential& potential,
         });
         const double beta = rz_next / rz;
         rz = rz_next;
+        if (!(rz > enough))
+            break;
         for_chunks(n, chunk, [&](int begin, int end) {
             for (int i = begin; i < end; ++i)
                 p[i] = inverse_diagonal[i] * r[i] + beta * p[i];
