@@ -102,6 +102,7 @@ void Assembly::add_corners(const Body& body, const Lattice& lattice) {
         const Vec3& X = lattice.corner_rest[c];
         rest.push_back(padded(X));
         mass.push_back(padded(Vec3::Constant(lattice.corner_mass[c])));
+        inverse_mass.push_back(1 / lattice.corner_mass[c]);
         volume.push_back(lattice.corner_volume[c]);
         initial_velocity.push_back(padded(body.velocity + body.spin.cross(X - centre)));
         outside.push_back(lattice.corner_outside[c]);
@@ -115,6 +116,7 @@ void Assembly::add_points(const Body& body,
     for (int p = 0; p < points.size(); ++p) {
         rest.push_back(padded(points.rest[p]));
         mass.push_back(padded(Vec3::Constant(points.mass[p])));
+        inverse_mass.push_back(1 / points.mass[p]);
         volume.push_back(points.volume[p]);
         initial_velocity.push_back(
             padded(body.velocity + body.spin.cross(points.rest[p] - centre)));

@@ -57,13 +57,14 @@ struct Assembly {
     std::vector<AssembledBody> bodies;
     std::vector<AssembledPin> pins;
     std::vector<AssembledProbe> probes;
-    Field rest;                   // (#C) [m]
-    Field mass;                   // (#C) in x, y and z [kg]
-    std::vector<double> volume;   // (#C) at rest [m³]
-    Field initial_velocity;       // (#C) [m/s]
-    Field force;                  // (#C) gravity and dead loads [N]
-    std::vector<double> outside;  // (#C) distance out of the body's surface at rest [m]
-    Vec3 gravity{0, 0, 0};        // [m/s²]
+    Field rest;                        // (#C) [m]
+    Field mass;                        // (#C) in x, y and z [kg]
+    std::vector<double> inverse_mass;  // (#C) [1/kg]
+    std::vector<double> volume;        // (#C) at rest [m³]
+    Field initial_velocity;            // (#C) [m/s]
+    Field force;                       // (#C) gravity and dead loads [N]
+    std::vector<double> outside;       // (#C) distance out of the body's surface at rest [m]
+    Vec3 gravity{0, 0, 0};             // [m/s²]
     std::vector<std::string> notes;
 
     int n_corners() const { return static_cast<int>(rest.size()); }

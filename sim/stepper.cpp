@@ -171,8 +171,9 @@ void Stepper::transfer_to_nodes(const State& state, const Field& v, const Field*
             q_n_[i] += rigid[map_.dof_body()[i]].at(map_.dof_position()[i]);
     }
     for (int k = 0; k < map_.n_free(); ++k) {
-        dof_mass_[k] = assembly_.mass[map_.free_corner()[k]][0];
-        inverse_mass_[k] = 1 / dof_mass_[k];
+        const int c = map_.free_corner()[k];
+        dof_mass_[k] = assembly_.mass[c][0];
+        inverse_mass_[k] = assembly_.inverse_mass[c];
     }
 }
 

@@ -33,19 +33,24 @@ struct CornerMap::Box {
 void CornerMap::rebuild(const Field& corners,
                         const std::vector<char>& free,
                         const std::vector<BodyRange>& bodies) {
-    dof_of_corner_.assign(corners.size(), -1);
+    // Free and slaved corners take turns in no order that a processor could guess: no branches.
+    dof_of_corner_.resize(corners.size());
     slave_of_corner_.resize(corners.size());
-    free_corner_.clear();
-    dof_body_.clear();
-    dof_position_.clear();
+    free_corner_.resize(corners.size());
+    dof_body_.resize(corners.size());
+    int n = 0;
     for (std::size_t b = 0; b < bodies.size(); ++b)
-        for (int c = bodies[b].begin; c < bodies[b].end; ++c)
-            if (free[c]) {
-                dof_of_corner_[c] = n_free();
-                free_corner_.push_back(c);
-                dof_body_.push_back(static_cast<int>(b));
-                dof_position_.push_back(corners[c]);
-            }
+        for (int c = bodies[b].begin; c < bodies[b].end; ++c) {
+            dof_of_corner_[c] = free[c] ? n : -1;
+            free_corner_[n] = c;
+            dof_body_[n] = static_cast<int>(b);
+            n += free[c] ? 1 : 0;
+        }
+    free_corner_.resize(n);
+    dof_body_.resize(n);
+    dof_position_.resize(n);
+    for (int k = 0; k < n; ++k)
+        dof_position_[k] = corners[free_corner_[k]];
     n_nodes_ = 0;
     parts_.clear();
     groups_.clear();
@@ -88,17 +93,20 @@ CornerMap::Box CornerMap::box_of_slaves(const Field& corners,
     Box box;
     Vec3p high{},
         sum{};  // not finite where a corner is not: comparisons alone would pass over it
-    slave_order_.clear();
+    slave_order_.resize(body.end - body.begin);
+    int n_slaves = 0;
     for (int c = body.begin; c < body.end; ++c) {
-        if (dof_of_corner_[c] >= 0)
-            continue;
+        slave_order_[n_slaves] = c;
+        n_slaves += dof_of_corner_[c] < 0 ? 1 : 0;
+    }
+    slave_order_.resize(n_slaves);
+    for (const int c : slave_order_) {
         const Vec3p cell = floor_of(corners[c] * inverse_size - in_all_axes(shift));
-        if (slave_order_.empty())
+        if (c == slave_order_.front())
             box.low = high = cell;
         box.low = cell < box.low ? cell : box.low;
         high = cell > high ? cell : high;
         sum += cell;
-        slave_order_.push_back(c);
     }
     const Vec3p extent = high - box.low + 1.0;
     if (!(extent[0] * extent[1] * extent[2] < most_cells)
