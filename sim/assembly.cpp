@@ -1,6 +1,7 @@
 #include "sim/assembly.h"
 
 #include "assets/base/error.h"
+#include "sim/elasticity/highest_frequency.h"
 
 #include <Eigen/Geometry>
 
@@ -18,15 +19,6 @@ constexpr double contact_stiffness =
 double young_modulus(const Lattice& lattice, int p) {
     const double mu = lattice.mu[p], lambda = lattice.lambda[p];
     return mu * (3 * lambda + 2 * mu) / (lambda + mu);
-}
-
-/// A domain's stiffness on its corners is V Bᵀ C B with B Bᵀ = 1/(2s²), C at most 3λ+2μ, over an eighth of its mass for
-/// each corner, hourglass modes and eight points being softer: w² <= 4 (3λ+2μ)/(rho s²), and no assembly of domains swings faster than its fastest one (Irons).
-double highest_frequency(const Lattice& lattice) {
-    double most = 0;
-    for (int p = 0; p < lattice.n_domains(); ++p)
-        most = std::max(most, (3 * lattice.lambda[p] + 2 * lattice.mu[p]) / lattice.density[p]);
-    return 2 * std::sqrt(most) / lattice.edge;
 }
 
 Vec3 centre_of_mass(const std::vector<double>& masses, const std::vector<Vec3>& places) {
@@ -50,14 +42,14 @@ AssembledBody::AssembledBody(const Body& body,
       end(first_corner + lattice.n_corners()),
       method(method_of(solver, body)),
       kernel(kernel_of(solver, body)),
-      cell_size(solver.grid_ratio * lattice.edge),
-      highest_frequency(sim::highest_frequency(lattice)) {
+      cell_size(solver.grid_ratio * lattice.edge) {
     if (method == Method::Mpm) {
         points = seed_points(lattice, body);
         end = begin + points->size();
         return;
     }
     elasticity = make_elastic_energy(lattice, body, solver.quadrature);
+    highest_frequency = sim::highest_frequency(*elasticity, lattice);
     enrichment.emplace(lattice, solver.enrich, cell_size);
     for (const Skin& skin : body.skins)
         surfaces.emplace_back(lattice, body, skin);
@@ -135,11 +127,11 @@ void Assembly::add_force(const Scene& scene, const DeadLoad& load) {
             force[bodies[b].begin + p] += padded(load.total * share[p]);
         return;
     }
-    double volume = 0;
+    double sum = 0;
     for (const int c : corners)
-        volume += lattice.corner_volume[c];
+        sum += lattice.corner_volume[c];
     for (const int c : corners)
-        force[bodies[b].begin + c] += padded(load.total * (lattice.corner_volume[c] / volume));
+        force[bodies[b].begin + c] += padded(load.total * (lattice.corner_volume[c] / sum));
 }
 
 void Assembly::add_pin(const Scene& scene, const Pin& pin) {

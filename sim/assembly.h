@@ -26,7 +26,7 @@ struct AssembledBody {
     Method method;
     Kernel kernel;
     double cell_size = 0;          // of its background grid [m]
-    double highest_frequency = 0;  // bound of what its corners swing with at rest [rad/s]
+    double highest_frequency = 0;  // that its corners swing with at rest; 0 of points [rad/s]
     std::unique_ptr<ElasticEnergy> elasticity;  // of domains
     std::optional<Enrichment> enrichment;       // of domains
     std::optional<MaterialPoints> points;       // in place of both

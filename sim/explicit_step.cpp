@@ -10,7 +10,7 @@ namespace sim {
 namespace {
 
 constexpr int chunk = 8192;
-constexpr double safety = 0.8;  // of the stable step of the bodies at rest: stretching stiffens
+constexpr double safety = 0.7;  // of the stable step of the bodies at rest: pressing stiffens
 constexpr double most_excited =
     1.9;                            // w dt of the motion seen; beyond 2 it grows without bound
 constexpr double most_cells = 0.3;  // that a corner may pass in a step
