@@ -1,13 +1,13 @@
 #include "sim/enrichment/enrichment.h"
 
 #include "assets/base/error.h"
+#include "sim/base/floor.h"
 #include "sim/enrichment/thin_domains.h"
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
-#include <immintrin.h>
 #include <map>
 
 namespace sim {
@@ -27,10 +27,6 @@ struct StretchBounds {
 constexpr StretchBounds enter{0.5, 0.35}, leave{0.6, 0.45};
 
 constexpr Vec3p to_all = {1, 1, 1, 0};
-
-Vec3p floor_of(const Vec3p& v) {
-    return _mm256_floor_pd(v);
-}
 
 void meet(int& seen, int region) {
     seen = seen == none || seen == region ? region : several;

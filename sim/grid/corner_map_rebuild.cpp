@@ -1,20 +1,16 @@
 // How slaved corners are grouped and nodes are numbered.
 #include "assets/base/error.h"
+#include "sim/base/floor.h"
 #include "sim/grid/corner_map.h"
 #include "sim/grid/kernel.h"
 
 #include <cmath>
-#include <immintrin.h>
 
 namespace sim {
 
 namespace {
 
 constexpr double most_cells = 1 << 28;
-
-Vec3p floor_of(const Vec3p& v) {
-    return _mm256_floor_pd(v);
-}
 
 Vec3p in_all_axes(double v) {
     return Vec3p{v, v, v, 0};
