@@ -1,4 +1,4 @@
-// Explicit steps: kick, drift, kick (velocity Verlet).
+// Explicit steps: kick, drift, kick (velocity Verlet), where stability asks for it several times.
 #include "sim/base/parallel.h"
 #include "sim/stepper.h"
 
@@ -14,6 +14,8 @@ constexpr double safety = 0.7;  // of the stable step of the bodies at rest: pre
 constexpr double most_excited =
     1.9;                            // w dt of the motion seen; beyond 2 it grows without bound
 constexpr double most_cells = 0.3;  // that a corner may pass in a step
+constexpr double rounding = 1e-6;   // of a number of drifts
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int contact_passes = 6;
 constexpr double depth_tolerance = 1e-3;  // of a linearised depth, in domain edges
 constexpr double noise =
@@ -25,37 +27,45 @@ double sum_of(const Vec3p& v) {
 
 }  // namespace
 
-double Stepper::explicit_limit() const {
-    double limit = std::numeric_limits<double>::infinity();
+double Stepper::stable_limit() const {
+    double limit = infinity;
     for (std::size_t b = 0; b < points_.size(); ++b) {
         const AssembledBody& body = assembly_.bodies[b];
         const double highest =
             points_[b] ? points_[b]->highest_frequency(body.kernel) : body.highest_frequency;
-        limit =
-            std::min({limit, safety * 2 / highest, most_cells * body.cell_size / speed_[b]});
+        limit = std::min(limit, safety * 2 / highest);
     }
     return limit;
 }
 
+double Stepper::limit_of_way() const {
+    double limit = infinity;
+    for (std::size_t b = 0; b < points_.size(); ++b)
+        limit = std::min(limit, most_cells * assembly_.bodies[b].cell_size / speed_[b]);
+    return limit;
+}
+
+int Stepper::count_drifts(const State& state, double dt) const {
+    if (has_points_)
+        return 1;  // they yield once a step
+    const double longest = std::min(stable_limit(), state.dt_limit);
+    return std::max(1, static_cast<int>(std::ceil(dt / longest - rounding)));
+}
+
 bool Stepper::try_explicit(State& state, double dt) {
-    dt_hat_ = dt / 2;  // of a kick
+    n_drifts_ = count_drifts(state, dt);
+    const double length = dt / n_drifts_;
+    dt_hat_ = length / 2;  // of a kick
     prescribe(scene_, assembly_, state.time, state.time + dt, prescribed_);
     choose_free_corners(state.x);
     transfer_to_nodes(state, state.v, &gradient_);
     prescribe_dofs(state, state.x, dt, dt);
-    begin_forces(state, dt);
+    begin_forces(state, length);
 
-    first_kick(state);
-    map_.apply_and_move(q_moved_, moved_, state.x, dt, x_end_);
-    if (exchange_contact(state, dt))
-        drift(state.x, dt);
     summary_ = {};
-    if (colliders_.largest_step(state.x, moved_, state.time, dt) < dt) {
-        summary_.termination = Termination::Unstable;  // a corner might pass through a collider
+    first_kick(state);
+    if (!take_drifts(state, length))
         return false;
-    }
-    if (restrain_by_contact(state, dt))
-        drift(state.x, dt);
     end_on_targets();
 
     // The forces there. The motion must not be faster than the step can follow.
@@ -63,7 +73,8 @@ bool Stepper::try_explicit(State& state, double dt) {
     if (!std::isfinite(potential_.elastic_gradient(x_end_, end_gradient_)
                        + add_grid_gradient(q_moved_, dt, grid_gradient_)))
         return false;
-    if (std::max(second_kick(state), seen_frequency_of_points()) * dt > most_excited) {
+    const double frequency = second_kick(n_drifts_ == 1 ? gradient_ : gradient_before_);
+    if (std::max(frequency, seen_frequency_of_points()) * 2 * dt_hat_ > most_excited) {
         summary_.termination = Termination::Unstable;
         return false;
     }
@@ -104,17 +115,78 @@ void Stepper::first_kick(const State& state) {
             q_moved_[held.dof] * potential_.step().is_free[held.dof] + held.velocity;
 }
 
-bool Stepper::restrain_by_contact(const State& state, double dt) {
-    bool any = restrain_by_surfaces(state, dt);
+bool Stepper::take_drifts(State& state, double length) {
+    if (!drift_with_contact(state, state.x, state.time, length))
+        return false;
+    inner_gradient_.assign(prescribed_.corners.size(), Vec3p{});
+    for (int k = 1; k < n_drifts_; ++k) {
+        std::swap(x_drift_, x_end_);
+        if (!std::isfinite(potential_.elastic_gradient(x_drift_, gradient_before_)))
+            return false;
+        kick_between_drifts();
+        const double time = state.time + k * length;
+        colliders_.begin_step(x_drift_, state.top_speed, time, length);
+        if (!drift_with_contact(state, x_drift_, time, length))
+            return false;
+    }
+    return n_drifts_ == 1 || is_clear_of_surfaces(state, n_drifts_ * length);
+}
+
+bool Stepper::drift_with_contact(State& state, const Field& x, double time, double length) {
+    map_.apply_and_move(q_moved_, moved_, x, length, x_end_);
+    bool meets_bodies = false;
+    if (n_drifts_ == 1 && exchange_contact(state, length)) {
+        meets_bodies = true;
+        drift(x, length);
+    }
+    if (colliders_.largest_step(x, moved_, time, length) < length) {
+        summary_.termination = Termination::Unstable;  // a corner might pass through a collider
+        return false;
+    }
+    const bool presses = n_drifts_ == 1 && restrain_by_surfaces(state, length);
+    if (restrain_by_colliders(x, length) || presses)
+        drift(x, length);
+    state.quiet_drifts = meets_bodies || presses ? 0 : state.quiet_drifts + 1;
+    return true;
+}
+
+void Stepper::kick_between_drifts() {
+    // What ends one drift and begins the next, in one go.
+    const double damped = 1 / (1 + scene_.solver.damping * dt_hat_), kept = damped * damped,
+                 kick = dt_hat_ * (damped + kept);
+    for (std::size_t i = 0; i < inner_gradient_.size(); ++i)
+        inner_gradient_[i] += gradient_before_[prescribed_.corners[i]];
+    const int n = static_cast<int>(x_drift_.size());
+    corner_.resize(n);
+    for_chunks(n, chunk, [&](int begin, int end) {
+        for (int c = begin; c < end; ++c)
+            corner_[c] = assembly_.force[c] - gradient_before_[c];
+    });
+    map_.apply_transposed(corner_, node_force_);
+    const Field& is_free = potential_.step().is_free;
+    for (int i = 0; i < map_.n_dofs(); ++i) {
+        const Vec3p q = kept * q_moved_[i] + (kick * inverse_mass_[i]) * node_force_[i];
+        q_moved_[i] += is_free[i] * (q - q_moved_[i]);
+    }
+}
+
+bool Stepper::is_clear_of_surfaces(const State& state, double dt) {
+    // Several drifts know of no other body: where they end in one, the step is taken again by a shorter one.
+    if (surfaces_.empty())
+        return true;
+    surfaces_.begin_step({state.x, state.v, state.top_speed, state.contacts}, x_end_, dt);
+    return !surfaces_.touches(x_end_);
+}
+
+bool Stepper::restrain_by_colliders(const Field& x, double length) {
     if (colliders_.empty())
-        return any;
+        return false;
     Field& change = end_gradient_;  // not known yet
     change = moved_;
-    if (colliders_.restrain(state.x, dt, change)) {
-        move_through_grid(change);
-        any = true;
-    }
-    return any;
+    if (!colliders_.restrain(x, length, change))
+        return false;
+    move_through_grid(change);
+    return true;
 }
 
 bool Stepper::restrain_by_surfaces(const State& state, double dt) {
@@ -137,12 +209,12 @@ bool Stepper::restrain_by_surfaces(const State& state, double dt) {
     return true;
 }
 
-double Stepper::second_kick(const State& state) {
+double Stepper::second_kick(const Field& gradient_before) {
     // Of free corners at once, by what slaved ones give their nodes later: each place is filled, to spare branches that no
     // processor guesses, and only that of its kind is read. On the way the frequency of the motion:
     // w² = |M⁻¹ dg|²_M / dx·dg, with dg the change of the forces over dx: of the modes in dx the fastest weigh most.
-    const int n = static_cast<int>(state.x.size());
-    const double damped = 1 / (1 + scene_.solver.damping * dt_hat_);
+    const int n = static_cast<int>(moved_.size());
+    const double damped = 1 / (1 + scene_.solver.damping * dt_hat_), length = 2 * dt_hat_;
     v_end_.resize(n);
     corner_.resize(n);
     const Vec3p sums = sum_chunks(n, chunk, [&](int begin, int end) {
@@ -150,8 +222,8 @@ double Stepper::second_kick(const State& state) {
         for (int c = begin; c < end; ++c) {
             const Vec3p& is_free = prescribed_.is_free[c];
             const double inverse_mass = assembly_.inverse_mass[c];
-            const Vec3p dx = x_end_[c] - state.x[c];
-            const Vec3p dg = (end_gradient_[c] - gradient_[c]) * is_free;
+            const Vec3p dx = length * moved_[c];
+            const Vec3p dg = (end_gradient_[c] - gradient_before[c]) * is_free;
             force += inverse_mass * dg * dg;
             strain += dx * dg;
             motion += assembly_.mass[c] * dx * dx;
@@ -171,7 +243,7 @@ void Stepper::kick_nodes(const State& state, double dt) {
     const int n = map_.n_dofs();
     const auto& step = potential_.step();
     const double damped = 1 / (1 + scene_.solver.damping * dt_hat_),
-                 keep = damped * share_kept(dt);
+                 keep = std::pow(damped, 2 * n_drifts_) * share_kept(dt);
     node_force_.resize(n);
     map_.gather_at_nodes(corner_, node_force_);
     for (int i = map_.n_free(); i < n; ++i) {
@@ -187,11 +259,13 @@ void Stepper::kick_nodes(const State& state, double dt) {
 }
 
 void Stepper::set_explicit_reactions(const State& state, double dt) {
-    // Force of the pin on a corner: m dv/dt - f + ∂Φ/∂x, by the mean of both ends. Only of pinned corners.
+    // Force of the pin on a corner: m dv/dt - f + ∂Φ/∂x, by the mean along the step. Only of pinned corners.
     reaction_.resize(state.x.size());
-    for (const int c : prescribed_.corners) {
+    for (std::size_t i = 0; i < prescribed_.corners.size(); ++i) {
+        const int c = prescribed_.corners[i];
         const Vec3p inertia = assembly_.mass[c] * (v_end_[c] - state.v[c]) / dt;
-        const Vec3p gradient = 0.5 * (gradient_[c] + end_gradient_[c]);
+        const Vec3p gradient =
+            (0.5 * (gradient_[c] + end_gradient_[c]) + inner_gradient_[i]) / n_drifts_;
         reaction_[c] = (inertia - assembly_.force[c] + gradient)
                        * (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]);
     }

@@ -114,6 +114,7 @@ void Stepper::end_implicit(State& state, double dt) {
     keep_inner_force(state);
     exchange_contact(state, dt_hat_);
     drift(potential_.step().x_n, dt_hat_);
+    end_on_targets();
     commit(state, dt);
     commit_affine(state, q_moved_);
     for (std::size_t b = 0; b < points_.size(); ++b)

@@ -157,8 +157,12 @@ std::vector<std::byte> Simulation::checkpoint() const {
     const State& state = impl_->state;
     const double has_history = state.x_before.empty() ? 0 : 1;
     const double n_contacts = static_cast<double>(state.contacts.size());
-    for (const double number :
-         {state.time, state.last_dt, state.dt_limit, has_history, n_contacts})
+    for (const double number : {state.time,
+                                state.last_dt,
+                                state.dt_limit,
+                                state.quiet_drifts,
+                                has_history,
+                                n_contacts})
         append(bytes, &number, sizeof(double));
     append(bytes, state.contacts.data(), state.contacts.size() * sizeof(HeldContact));
     append(bytes, state.top_speed.data(), state.top_speed.size() * sizeof(double));
@@ -185,8 +189,12 @@ void Simulation::restore(const std::vector<std::byte>& bytes) {
         next += size;
     };
     double has_history = 0, n_contacts = 0;
-    for (double* number :
-         {&state.time, &state.last_dt, &state.dt_limit, &has_history, &n_contacts})
+    for (double* number : {&state.time,
+                           &state.last_dt,
+                           &state.dt_limit,
+                           &state.quiet_drifts,
+                           &has_history,
+                           &n_contacts})
         take(number, sizeof(double));
     assets::check(n_contacts * sizeof(HeldContact) <= bytes.size(),
                   "checkpoint of another scene");

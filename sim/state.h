@@ -25,7 +25,8 @@ struct State {
     std::vector<HeldContact> contacts;  // that the last step ended with
     double last_dt = 0;                 // of the last step, 0 before the first [s]
     double dt_limit = std::numeric_limits<
-        double>::infinity();  // what failed and unstable steps left of dt [s]
+        double>::infinity();    // what failed and unstable steps left of dt [s]
+    double quiet_drifts = 1e6;  // of explicit steps since bodies last touched each other
 };
 
 }  // namespace sim

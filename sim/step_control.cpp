@@ -12,6 +12,7 @@ namespace {
 constexpr double growth = 1.1;     // of a step after one that succeeded
 constexpr double shortest = 1e-3;  // step worth trying, as a share of dt
 constexpr double rounding = 1e-6;  // of a number of steps
+constexpr int quiet_before = 4;    // drifts in which no bodies touch, until several make a step
 
 }  // namespace
 
@@ -24,10 +25,11 @@ void Stepper::advance(State& state, double end, double dt) {
         const double remaining = end - state.time;
         const SurfaceContact::Start start = {state.x, state.v, state.top_speed, state.contacts};
         surfaces_.see(start);
-        const double longest = is_explicit ? std::min(dt, explicit_limit()) : dt;
+        const double stable = is_explicit ? std::min({dt, limit_of_way(), stable_limit()}) : dt;
+        const double drift = std::min(stable, state.dt_limit);
+        const double longest = may_drift_freely(state) ? longest_of_drifts(drift, dt) : drift;
         const double allowed =
             std::min({longest,
-                      state.dt_limit,
                       colliders_.largest_step(state.x, state.v, state.time, longest),
                       surfaces_.largest_step(start, longest),
                       relative_limit(state)});
@@ -35,9 +37,13 @@ void Stepper::advance(State& state, double end, double dt) {
         const double length = remaining / n;
         if (try_step(state, length)) {
             ++steps;
-            state.dt_limit *= growth;
+            state.dt_limit *= std::pow(growth, n_drifts_);
             if (n == 1)
                 state.time = end;
+            continue;
+        }
+        if (n_drifts_ > 1) {
+            state.quiet_drifts = 0;
             continue;
         }
         state.dt_limit = length / 2;
@@ -49,11 +55,22 @@ void Stepper::advance(State& state, double end, double dt) {
                                                is_explicit ? x_end_ : potential_.positions(),
                                                length,
                                                summary_);
-        if (length < shortest * longest)
+        if (length < shortest * stable)
             throw failure;
         if (!is_expected)
             failures.emplace_back(failure.what());
     }
+}
+
+double Stepper::longest_of_drifts(double drift, double dt) const {
+    return drift * std::floor(std::min(dt, limit_of_way()) / drift + rounding);
+}
+
+bool Stepper::may_drift_freely(const State& state) const {
+    const bool meets_by_grid =
+        scene_.contact.mode == Contact::Mode::Grid && scene_.bodies.size() > 1;
+    return scene_.solver.steps == Steps::Explicit && !has_points_ && !meets_by_grid
+           && state.quiet_drifts >= quiet_before;
 }
 
 bool Stepper::try_step(State& state, double dt) {

@@ -263,7 +263,6 @@ void Stepper::drift(const Field& x_n, double length) {
     x_end_.resize(x_n.size());
     for (std::size_t c = 0; c < x_n.size(); ++c)
         x_end_[c] = x_n[c] + length * moved_[c];
-    end_on_targets();
 }
 
 void Stepper::end_on_targets() {

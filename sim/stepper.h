@@ -25,7 +25,9 @@ class Stepper {
     Stepper(const Scene& scene, Assembly& assembly);
 
     /// Steps by solver.steps until state.time is `end`, in steps no longer than dt, nor than failures and stability
-    /// allow: a step that fails is halved, and grows back slowly. Throws Error(Diverged) where halving does not help.
+    /// allow: a step that fails is halved, and grows back slowly. Explicit steps are longer than stability allows while
+    /// no bodies touch: kicks and drifts are then repeated under one map T. Throws Error(Diverged) where halving does
+    /// not help.
     void advance(State& state, double end, double dt);
 
     /// Equilibrium of the loads at `time`, reached from `state` by moving the pins there; velocities become zero.
@@ -70,6 +72,8 @@ class Stepper {
 
   private:
     // step_control.cpp
+    bool may_drift_freely(const State& state) const;
+    double longest_of_drifts(double drift, double dt) const;
     bool try_step(State& state, double dt);
 
     // stepper.cpp: what all steps share
@@ -120,12 +124,18 @@ class Stepper {
     void set_reactions();
 
     // explicit_step.cpp
-    double explicit_limit() const;
+    double stable_limit() const;
+    double limit_of_way() const;
+    int count_drifts(const State& state, double dt) const;
     bool try_explicit(State& state, double dt);
     void first_kick(const State& state);
-    bool restrain_by_contact(const State& state, double dt);
+    bool take_drifts(State& state, double length);
+    bool drift_with_contact(State& state, const Field& x, double time, double length);
+    void kick_between_drifts();
+    bool is_clear_of_surfaces(const State& state, double dt);
+    bool restrain_by_colliders(const Field& x, double length);
     bool restrain_by_surfaces(const State& state, double dt);
-    double second_kick(const State& state);
+    double second_kick(const Field& gradient_before);
     void kick_nodes(const State& state, double dt);
     void set_explicit_reactions(const State& state, double dt);
 
@@ -170,11 +180,14 @@ class Stepper {
     Field start_gradient_, grid_gradient_;  // of points in explicit steps (#dofs) [N]
     Field moved_;  // (#C) velocity that moves the corners in this step [m/s]
     Field corner_, reaction_;
-    Field x_end_;                    // (#C) where they end [m]
-    Field v_end_;                    // (#C) and how fast, of explicit steps [m/s]
-    Field acting_;                   // (#C) forces that go to nodes, at slaves alone [N]
-    std::vector<double> speed_;      // (#bodies) of the fastest corner [m/s]
-    Field gradient_, end_gradient_;  // of explicit steps, at the start and the end (#C) [N]
+    Field x_end_;                      // (#C) where they end [m]
+    Field v_end_;                      // (#C) and how fast, of explicit steps [m/s]
+    Field acting_;                     // (#C) forces that go to nodes, at slaves alone [N]
+    std::vector<double> speed_;        // (#bodies) of the fastest corner [m/s]
+    Field gradient_, end_gradient_;    // of explicit steps, at the start and the end (#C) [N]
+    int n_drifts_ = 1;                 // of the last explicit step
+    Field x_drift_, gradient_before_;  // where its last drift begins, of several (#C) [m], [N]
+    Field inner_gradient_;  // Σ over what lies between its drifts, at prescribed corners [N]
 };
 
 }  // namespace sim

@@ -281,6 +281,12 @@ void SurfaceContact::add_diagonal(Field& diagonal) const {
     }
 }
 
+bool SurfaceContact::touches(const Field& x) const {
+    return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& contact) {
+        return contact.depth(contact.separation(x)) > 0;
+    });
+}
+
 bool SurfaceContact::has_changed_touch(const Field& x) const {
     return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& contact) {
         return (contact.depth(contact.separation(x)) > 0) != (contact.start_depth > 0);

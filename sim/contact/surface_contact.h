@@ -67,6 +67,9 @@ class SurfaceContact : public ContactEnergy {
     /// What the next step starts with where this one ends at x, ascending.
     std::vector<HeldContact> held(const Field& x) const;
 
+    /// Whether any vertex is inside what it may touch at x.
+    bool touches(const Field& x) const;
+
     /// Whether a vertex has begun or ceased to touch since the start of the step that has led to x.
     bool has_changed_touch(const Field& x) const;
 

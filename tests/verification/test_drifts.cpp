@@ -1,0 +1,139 @@
+// Explicit steps longer than stability allows for one drift: several drifts under one map.
+#include "sim/simulation.h"
+#include "tests/support/bar_scene.h"
+#include "tests/support/soft_block.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+constexpr double frame = 9.5e-3;          // [s]
+constexpr int n_drifts = 22;              // in a frame: of 0.43 ms, the bar is stable at 0.47
+constexpr double long_step = frame / 10;  // there is time for two drifts in it
+
+tests::BarOptions bar(sim::Method method, double dt) {
+    tests::BarOptions options;
+    options.solver.method = method;
+    options.solver.steps = sim::Steps::Explicit;
+    options.solver.dt = dt;
+    return options;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a step of two drifts moves finite elements as two steps do, and pins pull as their mean",
+    "[drifts]") {
+    const auto start = [&](double dt) {
+        sim::Scene scene = tests::bar_scene(bar(sim::Method::Fem, dt));
+        scene.solver.damping = 3;
+        return sim::Simulation(scene, frame);
+    };
+    sim::Simulation longer = start(long_step), shorter = start(frame / n_drifts);
+    for (int k = 1; k <= 5; ++k) {
+        longer.advance_to(frame * k);
+        Vec3 pull{0, 0, 0};
+        for (int drift = 1; drift <= n_drifts; ++drift) {
+            shorter.advance_to(frame * (k - 1 + double(drift) / n_drifts));
+            if (drift > n_drifts - 2)
+                pull += shorter.pins()[0].force / 2;
+        }
+        REQUIRE(longer.stats().steps == n_drifts / 2);
+        const Vec3 tip = shorter.probes()[0].position;
+        CHECK((longer.probes()[0].position - tip).norm() < 1e-11);
+        CHECK((longer.pins()[0].force - pull).norm() < 1e-6 * pull.norm());
+        CHECK(longer.stats().kinetic_energy
+              == Approx(shorter.stats().kinetic_energy).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("under one map for a long step a bar swings as with a map for each drift",
+          "[drifts]") {
+    // The map is that of where the step begins: its age costs less than the map itself.
+    const sim::Method method = GENERATE(sim::Method::Enriched, sim::Method::Domains);
+    const auto tip = [&](double dt, double time) {
+        sim::Simulation simulation(tests::bar_scene(bar(method, dt)), frame);
+        simulation.advance_to(time);
+        return simulation.probes()[0].position;
+    };
+    const double swing = 0.15;  // of the tip, down and up again [m]
+    for (const double time : {0.1, 0.2, 0.4}) {
+        const Vec3 by_short = tip(0.4e-3, time), by_long = tip(2e-3, time);
+        CAPTURE(time, by_short.transpose(), by_long.transpose());
+        CHECK((by_long - by_short).norm() < 0.01 * swing);
+    }
+}
+
+TEST_CASE("long explicit steps bounce on the ground as short ones do", "[drifts]") {
+    // Every drift meets colliders. A cube of 1 MPa is stable at 0.9 ms; it falls by 0.2 m and sticks to nothing.
+    const sim::Method method = GENERATE(sim::Method::Fem, sim::Method::Domains);
+
+    struct Course {
+        double deepest = 0, rebound = 0;  // [domain edges], [m]
+        int steps = 0;
+    };
+
+    const auto fall = [&](double dt) {
+        sim::Scene scene;
+        scene.solver = bar(method, dt).solver;
+        scene.bodies = {tests::soft_block("cube", {0, 0, 0.2}, Vec3::Constant(0.3), 0.05, 1e6)};
+        scene.forces.push_back(sim::Gravity{{0, 0, -10}});
+        sim::Collider ground;
+        ground.shape = sim::PlaneShape{{0, 0, 0}, {0, 0, 1}};
+        scene.colliders.push_back(ground);
+        scene.probes = {{"cube", "cube", std::string("all")}};
+        sim::Simulation simulation(scene, frame);
+        Course course;
+        for (int k = 1; k <= 60; ++k) {
+            simulation.advance_to(0.006 * k);
+            const sim::Stats stats = simulation.stats();
+            course.deepest = std::max(course.deepest, stats.collider_penetration);
+            course.steps += stats.steps;
+            if (k > 40)
+                course.rebound = std::max(course.rebound, simulation.probes()[0].position.z());
+        }
+        return course;
+    };
+    const Course by_short = fall(0.5e-3), by_long = fall(6e-3);
+    CAPTURE(int(method),
+            by_short.rebound,
+            by_long.rebound,
+            by_short.deepest,
+            by_long.deepest,
+            by_long.steps);
+    CHECK(by_long.steps < by_short.steps / 4);
+    CHECK(by_long.deepest < 0.02);
+    CHECK(by_short.rebound > 0.2);
+    CHECK(by_long.rebound == Approx(by_short.rebound).epsilon(0.02));
+}
+
+TEST_CASE("cubes that meet in the middle of a long explicit step stay out of each other",
+          "[drifts]") {
+    const double speed = GENERATE(1, 5, 10), side = 0.3;
+    const sim::Method method = GENERATE(sim::Method::Fem, sim::Method::Domains);
+    CAPTURE(speed, int(method));
+    sim::Scene scene;
+    scene.solver = bar(method, 8e-3).solver;
+    const Vec3 size = Vec3::Constant(side);
+    scene.bodies = {tests::soft_block("left", {-side - 0.02, 0, 0}, size, 0.05, 1e6),
+                    tests::soft_block("right", {0.02, 0.12, 0.12}, size, 0.05, 1e6)};
+    scene.bodies[0].velocity = {speed / 2, 0, 0};
+    scene.bodies[1].velocity = {-speed / 2, 0, 0};
+    sim::Simulation simulation(scene, frame);
+    const sim::Stats start = simulation.stats();
+    double deepest = 0, least = 1e9;
+    for (int k = 1; k <= 40; ++k) {
+        simulation.advance_to((0.2 / speed + 0.04) * k / 40);
+        const sim::Stats now = simulation.stats();
+        deepest = std::max(deepest, now.penetration);
+        least = std::min(least, tests::energy(now));
+        CHECK((now.linear_momentum - start.linear_momentum).norm()
+              < 1e-12 * start.total_mass * speed);
+        CHECK(tests::energy(now) < tests::energy(start) * (1 + 1e-6));
+    }
+    CHECK(least < 0.99 * tests::energy(start));  // they have met
+    CHECK(deepest < 0.02);
+}
