@@ -9,6 +9,7 @@ namespace {
 constexpr double cell_size = 1.5;  // in domain edges; more where vertices spread over many
 constexpr double most_cells_per_vertex = 8;
 constexpr int chunk = 512;
+constexpr double single_rounding = 0x1p-21;  // a few roundings of single precision
 
 }  // namespace
 
@@ -19,9 +20,14 @@ VertexGrid::VertexGrid(const ContactSurface& surface)
     sorted_.resize(n);
     of_.resize(n);
     for (int axis = 0; axis < 3; ++axis) {
-        now_[axis].resize(n + 3);
-        rest_[axis].resize(n + 3);
+        now_[axis].resize(n + n_lanes - 1);
+        rest_[axis].resize(n + n_lanes - 1);
     }
+    PaddedBounds rest;
+    for (const ContactVertex& vertex : surface.vertices)
+        rest.add(padded(vertex.rest));
+    rest_low_ = rest.low;
+    rest_extent_ = rest.farthest(rest);
 }
 
 void VertexGrid::place(const ContactSurface& surface, const Field& corners) {
@@ -38,18 +44,22 @@ void VertexGrid::place(const ContactSurface& surface, const Field& corners) {
     for (const Vec3p& x : at_)
         bounds.add(x);
     choose_cells(bounds);
+    rounding_ = single_rounding * (bounds.farthest(bounds) + rest_extent_ + 4 * least_cell_);
     sort(surface);
 }
 
 void VertexGrid::choose_cells(const PaddedBounds& bounds) {
     low_ = bounds.low;
     const double most = most_cells_per_vertex * static_cast<double>(at_.size()) + 64;
-    for (cell_ = least_cell_;; cell_ *= 2) {
-        const Vec3p n = (bounds.high - bounds.low) / cell_ + 1;
+    for (double cell = least_cell_;; cell *= 2) {
+        const Vec3p n = (bounds.high - bounds.low) / cell + 1;
         if (n[0] * n[1] * n[2] > most)
             continue;
-        for (int axis = 0; axis < 3; ++axis)
+        for (int axis = 0; axis < 3; ++axis) {
             n_[axis] = static_cast<int>(n[axis]);
+            last_[axis] = n_[axis] - 1;
+        }
+        inverse_cell_ = 1 / cell;
         return;
     }
 }
@@ -69,8 +79,9 @@ void VertexGrid::sort(const ContactSurface& surface) {
         const int s = start_[of_[v] + 1]++;
         sorted_[s] = v;
         for (int axis = 0; axis < 3; ++axis) {
-            now_[axis][s] = at_[v][axis];
-            rest_[axis][s] = surface.vertices[v].rest[axis];
+            now_[axis][s] = static_cast<float>(at_[v][axis] - low_[axis]);
+            rest_[axis][s] =
+                static_cast<float>(surface.vertices[v].rest[axis] - rest_low_[axis]);
         }
     }
 }
