@@ -119,8 +119,9 @@ void Enrichment::update(const Lattice& lattice, const Vec3p* corners, char* free
     for (int p = 0; p < lattice.n_domains(); ++p) {
         const bool was = enriched_[p];
         bool is = is_thin_[p];
-        if (by_cells) {
-            const Cell& cell = cells_[index_of(floor_of(centres_[p]))];
+        const int index = by_cells ? index_of(floor_of(centres_[p])) : none;
+        if (by_cells && is_marked_[index]) {
+            const Cell& cell = cells_[index];
             is |= cell.boundary || (was && cell.near_boundary);
             if (criteria_.mixed_cell)
                 is |= cell.region == several || (was && cell.near_region == several);
@@ -135,6 +136,11 @@ void Enrichment::update(const Lattice& lattice, const Vec3p* corners, char* free
             for (const int c : lattice.corners[p])
                 free[c] = 1;
     }
+    for (const int cell : marked_) {
+        cells_[cell] = {};
+        is_marked_[cell] = false;
+    }
+    marked_.clear();
 }
 
 void Enrichment::find_centres(const Lattice& lattice, const Vec3p* corners) {
@@ -159,7 +165,10 @@ void Enrichment::find_centres(const Lattice& lattice, const Vec3p* corners) {
             assets::ErrorKind::Diverged,
             "a body spreads over more background cells than can be held; it has flown apart");
     step_ = {1, int(size[0]), int(size[0] * size[1])};
-    cells_.assign(static_cast<std::size_t>(size[0] * size[1] * size[2]), Cell{});
+    // Boxes around slender bodies are nearly empty: only cells that were marked are cleared.
+    cells_.resize(
+        std::max(cells_.size(), static_cast<std::size_t>(size[0] * size[1] * size[2])));
+    is_marked_.resize(cells_.size());
 }
 
 int Enrichment::index_of(const Vec3p& cell) const {
@@ -181,7 +190,11 @@ void Enrichment::mark_cells(const Lattice& lattice) {
         for (int z = 0; z <= int(extent[2]); ++z)
             for (int y = 0; y <= int(extent[1]); ++y)
                 for (int x = 0; x <= int(extent[0]); ++x) {
-                    Cell& near = cells_[first + x + step_[1] * y + step_[2] * z];
+                    const int index = first + x + step_[1] * y + step_[2] * z;
+                    if (!is_marked_[index])
+                        marked_.push_back(index);
+                    is_marked_[index] = true;
+                    Cell& near = cells_[index];
                     meet(near.near_region, region);
                     near.near_boundary |= is_boundary;
                 }

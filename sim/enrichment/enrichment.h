@@ -55,9 +55,11 @@ class Enrichment {
 
     std::vector<int> marking_;  // domains that decide about the cells around them
     Vec3p low_{};
-    std::array<int, 3> step_{};  // from a cell to the next along x, y and z
-    std::vector<Cell> cells_;
-    std::vector<Vec3p> centres_;  // (#D) in cells
+    std::array<int, 3> step_{};    // from a cell to the next along x, y and z
+    std::vector<Cell> cells_;      // without marks between steps
+    std::vector<bool> is_marked_;  // (#cells) small enough to be asked for every domain
+    std::vector<int> marked_;      // of them
+    std::vector<Vec3p> centres_;   // (#D) in cells
 };
 
 }  // namespace sim

@@ -5,6 +5,7 @@
 #include "sim/scene.h"
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -150,6 +151,7 @@ class CornerMap {
     void rebuild_body(const Field& corners, const BodyRange& body, int index);
     Box box_of_slaves(const Field& corners, const BodyRange& body, double shift);
     void sort_slaves(const Field& corners, const BodyRange& body, const Box& box, double shift);
+    void group_occupied_cells();
     void number_nodes(const Box& box, int n, Part& part);
     void keep_trilinear_weights(Part& part);
 
@@ -183,7 +185,11 @@ class CornerMap {
     mutable std::vector<Shares> shares_;                    // scratch of the gathers
 
     // Scratch of rebuild(), kept to avoid allocations in every step.
-    std::vector<int> slave_order_, cell_of_slave_, cell_start_, node_of_, base_;
+    std::vector<int> slave_order_, cell_of_slave_, base_, placed_;
+    // Of cells and nodes in a box; between uses 0, 0 and -1.
+    std::vector<int> cell_slave_,
+        node_of_;                          // slaves of a cell, later the next one's place; node
+    std::vector<std::uint64_t> occupied_;  // a bit for each cell
 };
 
 }  // namespace sim

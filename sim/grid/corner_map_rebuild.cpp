@@ -4,13 +4,17 @@
 #include "sim/grid/corner_map.h"
 #include "sim/grid/kernel.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 namespace sim {
 
 namespace {
 
 constexpr double most_cells = 1 << 28;
+constexpr int word = 64;  // bits
 
 Vec3p in_all_axes(double v) {
     return Vec3p{v, v, v, 0};
@@ -120,31 +124,23 @@ void CornerMap::sort_slaves(const Field& corners,
                             double shift) {
     // Counting sort by the lowest node of the stencil.
     const double inverse_size = 1 / body.cell_size;
-    const int n_cells = box.count();
-    cell_start_.assign(n_cells + 1, 0);
+    const std::size_t n_cells = box.count();
+    cell_slave_.resize(std::max(cell_slave_.size(), n_cells));
+    occupied_.resize(std::max(occupied_.size(), n_cells / word + 1));
     cell_of_slave_.resize(slave_order_.size());
     for (std::size_t k = 0; k < slave_order_.size(); ++k) {
         const Vec3p& x = corners[slave_order_[k]];
         const Vec3p local = floor_of(x * inverse_size - in_all_axes(shift)) - box.low;
         const int cell = int(local[0]) + box.n[0] * (int(local[1]) + box.n[1] * int(local[2]));
         cell_of_slave_[k] = cell;
-        ++cell_start_[cell + 1];
+        ++cell_slave_[cell];
+        occupied_[cell / word] |= std::uint64_t{1} << cell % word;
     }
-    // Occupied cells in order, each with its range of slaves.
-    const int first_slave = static_cast<int>(slave_corner_.size());
-    base_.clear();
-    for (int cell = 0; cell < n_cells; ++cell) {
-        const int begin = cell_start_[cell];
-        cell_start_[cell + 1] += begin;
-        if (cell_start_[cell + 1] > begin) {
-            groups_.push_back({first_slave + begin, first_slave + cell_start_[cell + 1]});
-            base_.push_back(cell);
-        }
-    }
-    slave_corner_.resize(first_slave + slave_order_.size());
+    group_occupied_cells();
+    slave_corner_.resize(slave_corner_.size() + slave_order_.size());
     slave_local_.resize(slave_corner_.size());
     for (std::size_t k = 0; k < slave_order_.size(); ++k) {
-        const int slave = first_slave + cell_start_[cell_of_slave_[k]]++;
+        const int slave = cell_slave_[cell_of_slave_[k]]++;
         const Vec3p scaled = corners[slave_order_[k]] * inverse_size;
         slave_corner_[slave] = slave_order_[k];
         slave_of_corner_[slave_order_[k]] = slave;
@@ -153,6 +149,22 @@ void CornerMap::sort_slaves(const Field& corners,
         const Vec3p least = in_all_axes(shift), local = scaled - floor_of(scaled - least);
         slave_local_[slave] = local > least ? local : least;
     }
+    for (const int cell : base_)
+        cell_slave_[cell] = 0;
+}
+
+void CornerMap::group_occupied_cells() {
+    // In their order, each with its range of slaves. Boxes around slender bodies are nearly empty.
+    base_.clear();
+    int begin = static_cast<int>(slave_corner_.size());
+    for (std::size_t w = 0; w < occupied_.size(); ++w)
+        for (; occupied_[w] != 0; occupied_[w] &= occupied_[w] - 1) {
+            const int cell = static_cast<int>(w) * word + std::countr_zero(occupied_[w]);
+            const int end = begin + std::exchange(cell_slave_[cell], begin);
+            groups_.push_back({begin, end});
+            base_.push_back(cell);
+            begin = end;
+        }
 }
 
 void CornerMap::keep_trilinear_weights(Part& part) {
@@ -173,7 +185,9 @@ void CornerMap::keep_trilinear_weights(Part& part) {
 void CornerMap::number_nodes(const Box& box, int n, Part& part) {
     const int per_group = n * n * n;
     const std::array<int, 3> size = {box.n[0] + n - 1, box.n[1] + n - 1, box.n[2] + n - 1};
-    node_of_.assign(static_cast<std::size_t>(size[0]) * size[1] * size[2], -1);
+    node_of_.resize(
+        std::max(node_of_.size(), static_cast<std::size_t>(size[0]) * size[1] * size[2]), -1);
+    placed_.clear();
     group_nodes_.resize(part.first_entry + base_.size() * per_group);
     int* group_node = group_nodes_.data() + part.first_entry;
     for (const int base : base_) {
@@ -182,15 +196,19 @@ void CornerMap::number_nodes(const Box& box, int n, Part& part) {
         for (int z = l; z < l + n; ++z)
             for (int y = j; y < j + n; ++y)
                 for (int x = i; x < i + n; ++x) {
-                    int& node = node_of_[x + size[0] * (y + size[1] * z)];
+                    const int place = x + size[0] * (y + size[1] * z);
+                    int& node = node_of_[place];
                     if (node < 0) {
                         node = n_nodes_++;
+                        placed_.push_back(place);
                         const Vec3p from_lowest = {double(x), double(y), double(z), 0};
                         dof_position_.push_back((box.low + from_lowest) * part.cell_size);
                     }
                     *group_node++ = n_free() + node;
                 }
     }
+    for (const int place : placed_)
+        node_of_[place] = -1;
 }
 
 }  // namespace sim
