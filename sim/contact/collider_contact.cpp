@@ -11,9 +11,8 @@ namespace sim {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double steepest_distance = 2;  // gap over way, at most
-constexpr double impact_depth = 0.01;    // in domain edges
-constexpr double share_left = 0.5;       // of a gap, before it is looked at again
+constexpr double impact_depth = 0.01;  // in domain edges
+constexpr double margin = 0.5;         // of the domain's edge, where corners count as near
 constexpr double share_of_thickness =
     0.4;  // that a corner may pass in a step where it is about to touch
 
@@ -45,14 +44,24 @@ ColliderContact::ColliderContact(const std::vector<Collider>& colliders,
         return;
     for (const Collider& collider : colliders)
         colliders_.emplace_back(collider, finest_edge(corners_), longest_reach(corners_));
+    std::vector<int> indices;
     for (const ContactCorner& corner : corners_)
-        stiffness_.push_back(corner.stiffness);
-    grips_.resize(colliders_.size() * corners_.size());
-    starts_.resize(grips_.size());
-    seen_.resize(grips_.size());
+        indices.push_back(corner.corner);
+    near_ = {std::move(indices), colliders_.size(), margin * finest_edge(corners_)};
+    pairs_.resize(corners_.size() * colliders_.size());
     for (const MovingCollider& collider : colliders_)
         poses_.push_back(collider.pose(0));
     start_poses_ = poses_;
+}
+
+double ColliderContact::gap(int k, int j, const Vec3& X) const {
+    return colliders_[j].distance(X).gap + corners_[k].outside;
+}
+
+double ColliderContact::stiffness_of(const ContactCorner& corner) const {
+    const double stop = impact_depth * corner.edge;
+    const double v = top_speed_.empty() ? 0 : top_speed_[corner.body];
+    return std::max(corner.stiffness, corner.mass * v * v / (stop * stop));
 }
 
 double ColliderContact::depth_of(const ContactCorner& corner,
@@ -65,27 +74,18 @@ double ColliderContact::depth_of(const ContactCorner& corner,
     return std::max(0.0, -(distance.gap + corner.outside));
 }
 
-ColliderContact::Start ColliderContact::start_of(std::size_t k,
-                                                 std::size_t j,
-                                                 const Vec3& X) const {
+ColliderContact::Start ColliderContact::start_of(int k, int j) const {
+    const Vec3 X = start_poses_[j].bring_back(near_.start(k));
     const MovingCollider::Distance distance = colliders_[j].distance(X);
     const Pose& end = poses_[j];
-    return {X, end.R * distance.normal, end.carry(X), distance.gap + corners_[k].outside, true};
+    return {end.R * distance.normal, end.carry(X), distance.gap + corners_[k].outside};
 }
 
-double ColliderContact::depth_in_step(std::size_t k,
-                                      std::size_t j,
-                                      const Vec3& x,
-                                      Vec3& normal) const {
+double ColliderContact::depth_in_step(
+    int k, int j, const Start& start, const Vec3& x, Vec3& normal) const {
     // A corner comes no nearer than it moves, seen from the shape; twice as much where the distance is interpolated.
-    const auto is_apart = [&](const Start& from) {
-        const double way = from.gap / steepest_distance;
-        return way > 0 && (x - from.position).squaredNorm() < way * way;
-    };
-    Start start = starts_[k * colliders_.size() + j];
-    if (!start.is_known && !is_apart(start))
-        start = start_of(k, j, start.X);
-    if (is_apart(start)) {
+    const double way = start.gap / steepest_distance;
+    if (way > 0 && (x - start.position).squaredNorm() < way * way) {
         normal = start.normal;
         return 0;
     }
@@ -96,18 +96,38 @@ double ColliderContact::depth_in_step(std::size_t k,
     return std::max(0.0, -(start.gap + normal.dot(x - start.position)));
 }
 
+template <class Position, class Visit>
+void ColliderContact::for_pairs(const Position& at, const Visit& visit) const {
+    if (empty())
+        return;
+    const int n_colliders = static_cast<int>(colliders_.size());
+    const std::vector<int>& near = near_.near();
+    std::size_t next = 0;
+    Pair far;  // which grips nothing, as it does not touch at the start
+    for (const int k : near_.touching(at)) {
+        const bool is_near = next < near.size() && near[next] == k;
+        for (int j = 0; j < n_colliders; ++j) {
+            if (!is_near)
+                far.start = start_of(k, j);
+            const Pair& pair = is_near ? pairs_[next * n_colliders + j] : far;
+            Vec3 normal;
+            const double depth =
+                depth_in_step(k, j, pair.start, unpadded(at(corners_[k].corner)), normal);
+            visit(k, j, pair, depth, normal);
+        }
+        next += is_near;
+    }
+}
+
 template <class Visit>
 void ColliderContact::for_touching(const Field& x, const Visit& visit) const {
-    for (std::size_t k = 0; k < corners_.size(); ++k) {
-        const Vec3 position = unpadded(x[corners_[k].corner]);
-        for (std::size_t j = 0; j < colliders_.size(); ++j) {
-            Vec3 normal;
-            const double depth = depth_in_step(k, j, position, normal);
-            const Grip& grip = grips_[k * colliders_.size() + j];
-            if (depth > 0 || grip.holds())
-                visit(Touch{corners_[k].corner, stiffness_[k], normal, depth, grip});
-        }
-    }
+    for_pairs(
+        [&](int c) { return x[c]; },
+        [&](int k, int, const Pair& pair, double depth, const Vec3& normal) {
+            const ContactCorner& corner = corners_[k];
+            if (depth > 0 || pair.grip.holds())
+                visit(Touch{corner.corner, stiffness_of(corner), normal, depth, pair.grip});
+        });
 }
 
 void ColliderContact::begin_step(const Field& x_n,
@@ -116,52 +136,36 @@ void ColliderContact::begin_step(const Field& x_n,
                                  double dt) {
     if (empty())
         return;
-    for (std::size_t k = 0; k < corners_.size(); ++k) {
-        const ContactCorner& corner = corners_[k];
-        const double stop = impact_depth * corner.edge;
-        const double v = top_speed[corner.body];
-        stiffness_[k] = std::max(corner.stiffness, corner.mass * v * v / (stop * stop));
+    top_speed_ = top_speed;
+    const int n_colliders = static_cast<int>(colliders_.size());
+    for (int j = 0; j < n_colliders; ++j) {
+        start_poses_[j] = colliders_[j].pose(time);
+        poses_[j] = colliders_[j].pose(time + dt);
     }
-    for (std::size_t j = 0; j < colliders_.size(); ++j) {
-        const MovingCollider& collider = colliders_[j];
-        const Pose& start = start_poses_[j] = collider.pose(time);
-        const Pose& end = poses_[j] = collider.pose(time + dt);
-        for (std::size_t k = 0; k < corners_.size(); ++k) {
-            const Vec3 X = start.bring_back(unpadded(x_n[corners_[k].corner]));
-            Start& at = starts_[k * colliders_.size() + j];
-            Seen& seen = seen_[k * colliders_.size() + j];
-            Grip& grip = grips_[k * colliders_.size() + j];
-            // Far ones are looked at again when they may have come much nearer.
-            const double left = seen.gap - steepest_distance * (X - seen.X).norm();
-            if (left > share_left * seen.gap) {
-                at.X = X;
-                at.position = end.carry(X);
-                at.gap = left;
-                at.is_known = false;
-                grip.force = 0;
-                continue;
-            }
-            at = start_of(k, j, X);
-            seen = {X, at.gap};
-            grip = Grip::of(collider.friction(),
-                            stiffness_[k],
-                            std::max(0.0, -at.gap),
-                            dt,
-                            at.normal,
-                            at.position);
+    near_.begin_step(
+        x_n, start_poses_, poses_, [&](int k, int j, const Vec3& X) { return gap(k, j, X); });
+    pairs_.clear();
+    for (const int k : near_.near())
+        for (int j = 0; j < n_colliders; ++j) {
+            const Start start = start_of(k, j);
+            const double depth = std::max(0.0, -start.gap);
+            pairs_.push_back({start,
+                              Grip::of(colliders_[j].friction(),
+                                       stiffness_of(corners_[k]),
+                                       depth,
+                                       dt,
+                                       start.normal,
+                                       start.position)});
         }
-    }
 }
 
 bool ColliderContact::has_changed_touch(const Field& x) const {
-    for (std::size_t k = 0; k < corners_.size(); ++k)
-        for (std::size_t j = 0; j < colliders_.size(); ++j) {
-            Vec3 normal;
-            const double depth = depth_in_step(k, j, unpadded(x[corners_[k].corner]), normal);
-            if ((depth > 0) != (starts_[k * colliders_.size() + j].gap < 0))
-                return true;
-        }
-    return false;
+    bool has_changed = false;
+    for_pairs([&](int c) { return x[c]; },
+              [&](int, int, const Pair& pair, double depth, const Vec3&) {
+                  has_changed = has_changed || (depth > 0) != (pair.start.gap < 0);
+              });
+    return has_changed;
 }
 
 double ColliderContact::largest_step(const Field& x,
@@ -169,20 +173,21 @@ double ColliderContact::largest_step(const Field& x,
                                      double time,
                                      double dt) const {
     double limit = infinity;
-    for (const MovingCollider& collider : colliders_) {
+    for (int j = 0; j < static_cast<int>(colliders_.size()); ++j) {
+        const MovingCollider& collider = colliders_[j];
         if (std::isinf(collider.thickness()))
             continue;
         const Pose start = collider.pose(time), end = collider.pose(time + dt);
-        for (const ContactCorner& corner : corners_) {
-            const Vec3 position = unpadded(x[corner.corner]);
+        for (const int k : near_.reaching(j, x, v, dt, start, end)) {
+            const int c = corners_[k].corner;
+            const Vec3 position = unpadded(x[c]);
             const Vec3 X = start.bring_back(position);
-            const Vec3 relative = unpadded(v[corner.corner]) - (end.carry(X) - position) / dt;
-            const double speed = relative.norm();
-            const double gap = collider.distance(X).gap + corner.outside;
-            if (gap > speed * dt)
+            const Vec3 relative = unpadded(v[c]) - (end.carry(X) - position) / dt;
+            const double speed = relative.norm(), left = gap(k, j, X);
+            if (left > speed * dt)
                 continue;
             limit = std::min(limit,
-                             std::max(gap, share_of_thickness * collider.thickness()) / speed);
+                             std::max(left, share_of_thickness * collider.thickness()) / speed);
         }
     }
     return limit;
@@ -207,48 +212,42 @@ Mat3 ColliderContact::hessian_of(const Touch& touch) {
 
 double ColliderContact::add_gradient(const Field& x, Field& gradient) const {
     double energy = 0;
-    if (!empty())
-        for_touching(x, [&](const Touch& touch) {
-            gradient[touch.corner] += padded(gradient_of(touch, x, energy));
-        });
+    for_touching(x, [&](const Touch& touch) {
+        gradient[touch.corner] += padded(gradient_of(touch, x, energy));
+    });
     return energy;
 }
 
 bool ColliderContact::restrain(const Field& x, double dt, Field& v) const {
     bool any = false;
-    for (std::size_t k = 0; k < corners_.size(); ++k)
-        for (std::size_t j = 0; j < colliders_.size(); ++j) {
-            const ContactCorner& corner = corners_[k];
-            Vec3p& velocity = v[corner.corner];
-            Vec3 normal;
-            const double depth =
-                depth_in_step(k, j, unpadded(x[corner.corner] + dt * velocity), normal);
-            if (!(depth > 0))
-                continue;
-            any = true;
-            const double stopped = depth / dt;
-            const Pose& start = start_poses_[j];
-            const Vec3 at = unpadded(x[corner.corner]);
-            const Vec3 surface = (poses_[j].carry(start.bring_back(at)) - at) / dt;
-            const Vec3 slip = tangential(unpadded(velocity) - surface, normal);
-            const Friction& friction = colliders_[j].friction();
-            const double most = friction.stick ? infinity : friction.coefficient * stopped;
-            const double share = std::min(1.0, most / std::max(slip.norm(), 1e-300));
-            velocity += padded(stopped * normal - share * slip);
-        }
+    const auto end = [&](int c) { return x[c] + dt * v[c]; };  // as v is by then
+    for_pairs(end, [&](int k, int j, const Pair&, double depth, const Vec3& normal) {
+        if (!(depth > 0))
+            return;
+        any = true;
+        Vec3p& velocity = v[corners_[k].corner];
+        const double stopped = depth / dt;
+        const Vec3 at = unpadded(x[corners_[k].corner]);
+        const Vec3 surface = (poses_[j].carry(start_poses_[j].bring_back(at)) - at) / dt;
+        const Vec3 slip = tangential(unpadded(velocity) - surface, normal);
+        const Friction& friction = colliders_[j].friction();
+        const double most = friction.stick ? infinity : friction.coefficient * stopped;
+        const double share = std::min(1.0, most / std::max(slip.norm(), 1e-300));
+        velocity += padded(stopped * normal - share * slip);
+    });
     return any;
 }
 
 void ColliderContact::linearize(const Field& x) {
     blocks_.clear();
-    for (std::size_t k = 0; k < corners_.size(); ++k)
-        for (std::size_t j = 0; j < colliders_.size(); ++j)
-            if (Grip& grip = grips_[k * colliders_.size() + j]; grip.holds())
-                grip.linearize(unpadded(x[corners_[k].corner]));
-    if (!empty())
-        for_touching(x, [&](const Touch& touch) {
-            blocks_.push_back({touch.corner, hessian_of(touch)});
-        });
+    for (std::size_t i = 0; i < pairs_.size(); ++i)
+        if (Grip& grip = pairs_[i].grip; grip.holds()) {
+            const int k = near_.near()[i / colliders_.size()];
+            grip.linearize(unpadded(x[corners_[k].corner]));
+        }
+    for_touching(x, [&](const Touch& touch) {
+        blocks_.push_back({touch.corner, hessian_of(touch)});
+    });
 }
 
 void ColliderContact::add_product(const Field& u, Field& product) const {

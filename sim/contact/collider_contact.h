@@ -5,6 +5,7 @@
 #include "sim/contact/contact_energy.h"
 #include "sim/contact/grip.h"
 #include "sim/contact/moving_collider.h"
+#include "sim/contact/near_corners.h"
 
 #include <vector>
 
@@ -76,6 +77,17 @@ class ColliderContact : public ContactEnergy {
                                     const std::vector<char>& held = {}) const;
 
   private:
+    /// A corner and a collider at the start of the step, as the collider carries them to its end.
+    struct Start {
+        Vec3 normal{0, 0, 0}, position{0, 0, 0};  // the normal is 0 before the first step
+        double gap = 0;                           // of the body's surface [m]
+    };
+
+    struct Pair {
+        Start start;
+        Grip grip;
+    };
+
     struct Touch {
         int corner = 0;
         double stiffness = 0;  // k of the penalty [N/m]
@@ -84,21 +96,9 @@ class ColliderContact : public ContactEnergy {
         const Grip& grip;
     };
 
-    /// A corner and a collider at the start of the step, as the collider carries them to its end.
-    struct Start {
-        Vec3 X{0, 0, 0};                          // in the shape's own frame [m]
-        Vec3 normal{0, 0, 0}, position{0, 0, 0};  // the normal is 0 before the first step
-        double gap = 0;        // of the body's surface, or less: no normal is known then [m]
-        bool is_known = true;  // rather than `gap` at least
-    };
-
-    /// When a corner's distance from a collider was last looked at.
-    struct Seen {
-        Vec3 X{0, 0, 0};  // where it was in the shape's own frame [m]
-        double gap = 0;   // then [m]
-    };
-
-    Start start_of(std::size_t k, std::size_t j, const Vec3& X) const;
+    double gap(int k, int j, const Vec3& X) const;
+    double stiffness_of(const ContactCorner& corner) const;
+    Start start_of(int k, int j) const;
     Vec3 gradient_of(const Touch& touch, const Field& x, double& energy) const;
     static Mat3 hessian_of(const Touch& touch);
     double depth_of(const ContactCorner& corner,
@@ -106,16 +106,20 @@ class ColliderContact : public ContactEnergy {
                     const Pose& pose,
                     const Vec3& x,
                     Vec3& normal) const;
-    double depth_in_step(std::size_t k, std::size_t j, const Vec3& x, Vec3& normal) const;
+    double depth_in_step(int k, int j, const Start& start, const Vec3& x, Vec3& normal) const;
+
+    // All that may touch where the step ends with corners of the field at `at(corner)`, corner by corner and by collider:
+    // visit(k, j, pair, depth, normal). A visit may move its own corner: a near one meets every collider.
+    template <class Position, class Visit>
+    void for_pairs(const Position& at, const Visit& visit) const;
     template <class Visit>
     void for_touching(const Field& x, const Visit& visit) const;
 
     std::vector<MovingCollider> colliders_;
     std::vector<ContactCorner> corners_;
-    std::vector<double> stiffness_;  // (#corners) k of this step
-    std::vector<Start> starts_;      // (#corners × #colliders)
-    std::vector<Seen> seen_;         // (#corners × #colliders)
-    std::vector<Grip> grips_;        // (#corners × #colliders)
+    NearCorners near_;
+    std::vector<Pair> pairs_;        // (#near × #colliders)
+    std::vector<double> top_speed_;  // (#bodies) of this step; none before the first [m/s]
     std::vector<Pose> start_poses_,
         poses_;  // (#colliders) at the start and the end of the step
 

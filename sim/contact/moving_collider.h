@@ -20,6 +20,9 @@ struct Pose {
     }
 };
 
+/// The gap from a collider changes by no more than this times the way that a point goes: 1 but where it is interpolated.
+constexpr double steepest_distance = 2;
+
 class MovingCollider {
   public:
     /// `resolution`: the scale at which details matter of what has no formula (a mesh, ellipsoids and combined shapes):
@@ -37,7 +40,7 @@ class MovingCollider {
     };
 
     /// From a point X in the shape's own frame. Beyond `reach` the gap may be less than the distance, but no less than
-    /// `reach`, and changes by no more than twice the way that a point goes.
+    /// `reach`.
     Distance distance(const Vec3& X) const;
 
     /// The smallest extent along the axes, what a fast corner might pass through; infinite for a plane.   [m]
