@@ -4,7 +4,6 @@
 #include "sim/materials/neo_hookean.h"
 #include "sim/materials/stable_neo_hookean.h"
 
-#include <cstring>
 #include <utility>
 
 // Compiled for two instruction sets and chosen at run time; both do the same operations in every lane.
@@ -30,15 +29,8 @@ ALWAYS_INLINE void times(const Body& body) {
     unroll(body, std::make_integer_sequence<int, n>{});
 }
 
-ALWAYS_INLINE Lanes load(const double* p) {
-    Lanes v;
-    std::memcpy(&v, p, sizeof v);
-    return v;
-}
-
 ALWAYS_INLINE void add_to(double* p, const Lanes& v) {
-    const Lanes sum = load(p) + v;
-    std::memcpy(p, &sum, sizeof sum);
+    store_lanes(load_lanes(p) + v, p);
 }
 
 /// The eight values of one component, at the corners or as coefficients of the modes.
@@ -86,7 +78,7 @@ ALWAYS_INLINE void load_modes(const Brick& brick,
                               Eight h[3]) {
     times<3>([&](auto i) INLINED {
         times<8>([&](auto a)
-                     INLINED { h[i].v[a] = load(fields.in[i] + slot + brick.step[a]); });
+                     INLINED { h[i].v[a] = load_lanes(fields.in[i] + slot + brick.step[a]); });
         to_modes(h[i]);
     });
 }

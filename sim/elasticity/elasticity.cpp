@@ -4,7 +4,6 @@
 #include "sim/elasticity/places.h"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 
 namespace sim {
@@ -19,30 +18,6 @@ double hourglass_stiffness(const Lattice& lattice, int p) {
     const double mu = lattice.mu[p], lambda = lattice.lambda[p];
     const double nu = lambda / (2 * (lambda + mu));
     return (1 + nu) / 2 * mu * lattice.domain_volume(p) / (12 * lattice.edge * lattice.edge);
-}
-
-Lanes load_lanes(const double* values) {
-    Lanes lanes;
-    std::memcpy(&lanes, values, sizeof lanes);
-    return lanes;
-}
-
-/// Four corners side by side per component from the components side by side per corner, and back.
-static_assert(lane_count == 4);
-using FourVectors = std::array<Vec3p, 4>;
-
-[[gnu::always_inline]] inline FourVectors transposed(const FourVectors& v) {
-    using Order [[gnu::vector_size(32)]] = long long;
-    constexpr Order even = {0, 4, 2, 6}, odd = {1, 5, 3, 7}, low = {0, 1, 4, 5},
-                    high = {2, 3, 6, 7};
-    const Vec3p even01 = __builtin_shuffle(v[0], v[1], even),
-                odd01 = __builtin_shuffle(v[0], v[1], odd),
-                even23 = __builtin_shuffle(v[2], v[3], even),
-                odd23 = __builtin_shuffle(v[2], v[3], odd);
-    return {__builtin_shuffle(even01, even23, low),
-            __builtin_shuffle(odd01, odd23, low),
-            __builtin_shuffle(even01, even23, high),
-            __builtin_shuffle(odd01, odd23, high)};
 }
 
 /// Divides the domains of a box of cells so that in each layer a place has one corner at most: a brick has one place for
@@ -204,12 +179,12 @@ void Elasticity::load(const Brick& brick, const Vec3p* values, Scratch& scratch)
     const Vec3p none{};
     const int* corner = &corner_of_local_[brick.first_local];
     for (int l = 0; l < brick.n_local; l += lane_count) {
-        FourVectors of_corners;
+        Vec3p row[lane_count];
         for (int k = 0; k < lane_count; ++k)
-            of_corners[k] = corner[l + k] >= 0 ? values[corner[l + k]] : none;
-        const FourVectors of_components = transposed(of_corners);
+            row[k] = corner[l + k] >= 0 ? values[corner[l + k]] : none;
+        transpose(row);
         for (int i = 0; i < 3; ++i)
-            std::memcpy(&scratch.in[i][l], &of_components[i], sizeof(Lanes));
+            store_lanes(row[i], &scratch.in[i][l]);
     }
 }
 
@@ -217,14 +192,13 @@ void Elasticity::store(const Brick& brick, const Scratch& scratch, Vec3p* values
     const int* corner = &corner_of_local_[brick.first_local];
     const char* adds = &adds_[brick.first_local];
     for (int l = 0; l < brick.n_local; l += lane_count) {
-        FourVectors of_components{};
+        Vec3p row[lane_count] = {};
         for (int i = 0; i < 3; ++i)
-            of_components[i] =
-                load_lanes(&scratch.out[i][l]) + load_lanes(&scratch.out_right[i][l]);
-        const FourVectors of_corners = transposed(of_components);
+            row[i] = load_lanes(&scratch.out[i][l]) + load_lanes(&scratch.out_right[i][l]);
+        transpose(row);
         for (int k = 0; k < lane_count; ++k)
             if (const int c = corner[l + k]; c >= 0)
-                values[c] = adds[l + k] ? values[c] + of_corners[k] : of_corners[k];
+                values[c] = adds[l + k] ? values[c] + row[k] : row[k];
     }
 }
 

@@ -57,28 +57,16 @@ template <class S>
         d.inverse_transposed.m[k] = C.m[k] / d.J;
 }
 
-/// Half of eight numbers that lie side by side: of this size vectors live in registers on both instruction sets.
-using Four = double __attribute__((vector_size(32)));
-
-[[gnu::always_inline]] inline Four four(const double* p) {
-    Four v;
-    std::memcpy(&v, p, sizeof v);
-    return v;
-}
-
-[[gnu::always_inline]] inline void put(double* p, const Four& v) {
-    std::memcpy(p, &v, sizeof v);
-}
-
 [[gnu::always_inline]] inline Deformation<GaussLanes> at_points(const CubeGradients& b,
                                                                 const CornerValues& x) {
-    alignas(64) double F[9][8];
+    alignas(64) double
+        F[9][8];  // by halves: vectors of four live in registers on both instruction sets
     for (int k = 0; k < 9; ++k)
         for (const int half : {0, 4}) {
-            Four sum{};
+            Lanes sum{};
             for (int a = 0; a < 8; ++a)
-                sum += x[8 * (k % 3) + a] * four(&b.at_points[a][k / 3][half]);
-            put(&F[k][half], sum);
+                sum += x[8 * (k % 3) + a] * load_lanes(&b.at_points[a][k / 3][half]);
+            store_lanes(sum, &F[k][half]);
         }
     Deformation<GaussLanes> d;
     std::memcpy(d.F.m, F, sizeof F);
@@ -105,9 +93,10 @@ using Four = double __attribute__((vector_size(32)));
     for (int i = 0; i < 3; ++i)
         for (const int half : {0, 4}) {
             double* const at = out + 8 * i + half;
-            put(at,
-                four(at) + M[i] * four(&b[0][half]) + M[3 + i] * four(&b[1][half])
-                    + M[6 + i] * four(&b[2][half]));
+            store_lanes(load_lanes(at) + M[i] * load_lanes(&b[0][half])
+                            + M[3 + i] * load_lanes(&b[1][half])
+                            + M[6 + i] * load_lanes(&b[2][half]),
+                        at);
         }
 }
 
@@ -143,12 +132,13 @@ struct PointStiffness {
                     const double pg = p * g[8 * k + a];
                     for (const int half : {0, 4}) {
                         double* const at = K + 24 * row + 8 * k + half;
-                        put(at,
-                            four(at) + bA[k] * four(&b[0][half]) + bA[3 + k] * four(&b[1][half])
-                                + bA[6 + k] * four(&b[2][half])
-                                + t[row] * four(&z[8 * k + half])
-                                + z[row] * four(&t[8 * k + half])
-                                + pg * four(&g[8 * i + half]));
+                        store_lanes(load_lanes(at) + bA[k] * load_lanes(&b[0][half])
+                                        + bA[3 + k] * load_lanes(&b[1][half])
+                                        + bA[6 + k] * load_lanes(&b[2][half])
+                                        + t[row] * load_lanes(&z[8 * k + half])
+                                        + z[row] * load_lanes(&t[8 * k + half])
+                                        + pg * load_lanes(&g[8 * i + half]),
+                                    at);
                     }
                 }
             }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <initializer_list>
 #include <limits>
 
@@ -35,6 +36,29 @@ template <>
 struct BitsOf<double> {
     using Type = std::uint64_t;
 };
+
+/// Four doubles that follow each other at any address, and back.
+[[gnu::always_inline]] inline Lanes load_lanes(const double* from) {
+    Lanes lanes;
+    std::memcpy(&lanes, from, sizeof lanes);
+    return lanes;
+}
+
+[[gnu::always_inline]] inline void store_lanes(const Lanes& lanes, double* to) {
+    std::memcpy(to, &lanes, sizeof lanes);
+}
+
+/// Entry j of row[i] goes to entry i of row[j], in registers.
+[[gnu::always_inline]] inline void transpose(Lanes* row) {
+    const Lanes a = __builtin_shufflevector(row[0], row[1], 0, 4, 2, 6);
+    const Lanes b = __builtin_shufflevector(row[0], row[1], 1, 5, 3, 7);
+    const Lanes c = __builtin_shufflevector(row[2], row[3], 0, 4, 2, 6);
+    const Lanes d = __builtin_shufflevector(row[2], row[3], 1, 5, 3, 7);
+    row[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+    row[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    row[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+    row[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
 
 /// A 3×3 matrix with its columns stacked: m[3j + i] = A_ij.
 template <class S>

@@ -11,18 +11,6 @@ namespace sim {
 
 static_assert(sizeof(Lanes) == sizeof(Vec3p));
 
-/// Entry j of row[i] goes to entry i of row[j].
-[[gnu::always_inline]] inline void transpose(Lanes* row) {
-    const Lanes a = __builtin_shufflevector(row[0], row[1], 0, 4, 2, 6);
-    const Lanes b = __builtin_shufflevector(row[0], row[1], 1, 5, 3, 7);
-    const Lanes c = __builtin_shufflevector(row[2], row[3], 0, 4, 2, 6);
-    const Lanes d = __builtin_shufflevector(row[2], row[3], 1, 5, 3, 7);
-    row[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
-    row[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
-    row[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
-    row[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
-}
-
 /// Lane l is the matrix at[l].
 [[gnu::always_inline]] inline Matrix3<Lanes> load_lanes(const Matrix3<double>* const* at) {
     Matrix3<Lanes> F;
