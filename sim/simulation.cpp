@@ -15,6 +15,9 @@ namespace {
 
 constexpr double steps_per_frame = 10;  // where the shot gives no dt
 
+// Begins every checkpoint; counts up where what State holds, or its order, changes.
+constexpr char checkpoint_format[] = "state 1";
+
 void append(std::vector<std::byte>& bytes, const void* data, std::size_t size) {
     const std::size_t before = bytes.size();
     bytes.resize(before + size);
@@ -154,6 +157,7 @@ std::vector<PointCloud> Simulation::point_clouds() const {
 
 std::vector<std::byte> Simulation::checkpoint() const {
     std::vector<std::byte> bytes;
+    append(bytes, checkpoint_format, sizeof checkpoint_format);
     const State& state = impl_->state;
     const double has_history = state.x_before.empty() ? 0 : 1;
     const double n_contacts = static_cast<double>(state.contacts.size());
@@ -180,9 +184,11 @@ std::vector<std::byte> Simulation::checkpoint() const {
     return bytes;
 }
 
-void Simulation::restore(const std::vector<std::byte>& bytes) {
+bool Simulation::restore(const std::vector<std::byte>& bytes) {
+    std::size_t next = sizeof checkpoint_format;
+    if (bytes.size() < next || std::memcmp(bytes.data(), checkpoint_format, next) != 0)
+        return false;
     State& state = impl_->state;
-    std::size_t next = 0;
     const auto take = [&](void* to, std::size_t size) {
         assets::check(next + size <= bytes.size(), "checkpoint of another scene");
         std::memcpy(to, bytes.data() + next, size);
@@ -220,6 +226,7 @@ void Simulation::restore(const std::vector<std::byte>& bytes) {
     }
     assets::check(next == bytes.size(), "checkpoint of another scene");
     impl_->stepper.refresh(state);
+    return true;
 }
 
 }  // namespace sim

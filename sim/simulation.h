@@ -75,9 +75,10 @@ class Simulation {
     /// The bodies made of points, in order, now. They have no skins among surfaces().
     std::vector<PointCloud> point_clouds() const;
 
-    /// Everything that later frames depend on, in double; restore() continues bit-identically.
+    /// Everything that later frames depend on, in double; restore() continues bit-identically. It returns false and
+    /// changes nothing where a version of the program that keeps its state otherwise wrote the checkpoint.
     std::vector<std::byte> checkpoint() const;
-    void restore(const std::vector<std::byte>& state);
+    [[nodiscard]] bool restore(const std::vector<std::byte>& state);
 
   private:
     struct Impl;

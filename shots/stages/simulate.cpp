@@ -84,7 +84,8 @@ std::vector<assets::SurfaceFrame> surfaces_at(const SimulateJob& job,
 }
 
 /// Restores the last checkpoint where the frames and all beside them up to it are whole; returns the index of the frame to
-/// compute next, 0 to begin at the beginning.
+/// compute next, 0 to begin at the beginning. Throws Error(Input) where another version of the program wrote it: frames of
+/// two versions do not belong into one film.
 int resume(const SimulateJob& job,
            const assets::FrameCacheWriter& cache,
            const Companions& companions,
@@ -96,7 +97,14 @@ int resume(const SimulateJob& job,
     const int index = checkpoint->first - job.frames.front();
     if (index < 0 || index >= cache.n_whole_frames() || !companions.reach(job, index, surfaces))
         return 0;
-    simulation.restore(checkpoint->second);
+    if (!simulation.restore(checkpoint->second))
+        throw assets::Error(
+            assets::ErrorKind::Input,
+            fmt::format(
+                "{}: another version of supple simulated the frames up to {}; start again "
+                "with --overwrite, or use another --out",
+                cache_folder(job.folder).string(),
+                checkpoint->first));
     return index + 1;
 }
 

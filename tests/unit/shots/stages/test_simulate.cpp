@@ -160,6 +160,32 @@ TEST_CASE("another fingerprint is refused before a simulation is built, and touc
     CHECK(lines(read_file(folder.path() / "stats.csv")).size() == 4);
 }
 
+TEST_CASE("what another version of the program began is refused and kept") {
+    const TemporaryFolder folder;
+    auto job = make_job(folder.path(), 3);
+    run(job);
+    assets::FrameCacheWriter(cache_folder(job.folder),
+                             job.fingerprint,
+                             job.frames,
+                             assets::FrameCacheReader(cache_folder(job.folder)).surfaces(),
+                             false)
+        .write_checkpoint(1003, make_state(1));  // no state of this version
+    auto before = output(folder.path());
+    CHECK(run(job).built == 0);  // nothing is left to do
+
+    job = make_job(folder.path(), 5);
+    CHECK_THROWS_WITH(
+        run(job), Contains("another version of supple") && Contains("1003; start again"));
+    CHECK(run(make_job(folder.path(), 3)).built == 0);
+    auto after = output(folder.path());
+    for (auto* files : {&before, &after})
+        files->erase("cache/manifest.json");  // tells of five frames now
+    CHECK(after == before);
+
+    job.overwrite = true;
+    CHECK(run(job).advanced == 4);
+}
+
 TEST_CASE("whatever is lost or damaged is computed again, to the same bytes") {
     const TemporaryFolder folder;
     const auto job = make_job(folder.path(), 6);

@@ -31,7 +31,7 @@ TEST_CASE("a restored checkpoint goes on to the same bits") {
             second(scene, frame_time);
         whole.advance_to(0.05);
         first.advance_to(0.05);
-        second.restore(first.checkpoint());
+        REQUIRE(second.restore(first.checkpoint()));
         CHECK(second.time() == first.time());
         whole.advance_to(0.1);
         second.advance_to(0.1);
@@ -53,13 +53,28 @@ TEST_CASE("a restored checkpoint of points goes on to the same bits") {
         second(scene, frame_time);
     whole.advance_to(0.03);
     first.advance_to(0.03);
-    second.restore(first.checkpoint());
+    REQUIRE(second.restore(first.checkpoint()));
     whole.advance_to(0.06);
     second.advance_to(0.06);
     const bool goes_on = whole.checkpoint() == second.checkpoint(),
                moved = !(whole.checkpoint() == first.checkpoint());
     CHECK(goes_on);
     CHECK(moved);
+}
+
+TEST_CASE("a checkpoint that another version of the program wrote is left alone") {
+    const sim::Scene scene = bar(sim::Method::Enriched, sim::Steps::Explicit);
+    sim::Simulation simulation(scene, frame_time);
+    simulation.advance_to(0.05);
+    const std::vector<std::byte> now = simulation.checkpoint();
+    std::vector<std::byte> other = now;
+    other[6] ^= std::byte{1};  // the number of its format
+    CHECK_FALSE(simulation.restore(other));
+    other.assign(now.begin() + 8, now.end());  // of before there was one: begins with the time
+    CHECK_FALSE(simulation.restore(other));
+    CHECK_FALSE(simulation.restore({}));
+    const bool is_untouched = simulation.checkpoint() == now;
+    CHECK(is_untouched);
 }
 
 TEST_CASE("one thread and two give the same bits") {
