@@ -12,9 +12,7 @@ namespace {
 constexpr int chunk = 8192;
 constexpr double safety = 0.7;  // of the stable step of the bodies at rest: pressing stiffens
 constexpr double most_excited =
-    1.9;                            // w dt of the motion seen; beyond 2 it grows without bound
-constexpr double most_cells = 0.3;  // that a corner may pass in a step
-constexpr double rounding = 1e-6;   // of a number of drifts
+    1.9;  // w dt of the motion seen; beyond 2 it grows without bound
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int contact_passes = 6;
 constexpr double depth_tolerance = 1e-3;  // of a linearised depth, in domain edges
@@ -38,22 +36,14 @@ double Stepper::stable_limit() const {
     return limit;
 }
 
-double Stepper::limit_of_way() const {
+double Stepper::limit_of_way(double cells) const {
     double limit = infinity;
     for (std::size_t b = 0; b < points_.size(); ++b)
-        limit = std::min(limit, most_cells * assembly_.bodies[b].cell_size / speed_[b]);
+        limit = std::min(limit, cells * assembly_.bodies[b].cell_size / speed_[b]);
     return limit;
 }
 
-int Stepper::count_drifts(const State& state, double dt) const {
-    if (has_points_)
-        return 1;  // they yield once a step
-    const double longest = std::min(stable_limit(), state.dt_limit);
-    return std::max(1, static_cast<int>(std::ceil(dt / longest - rounding)));
-}
-
 bool Stepper::try_explicit(State& state, double dt) {
-    n_drifts_ = count_drifts(state, dt);
     const double length = dt / n_drifts_;
     dt_hat_ = length / 2;  // of a kick
     prescribe(scene_, assembly_, state.time, state.time + dt, prescribed_);
@@ -129,7 +119,8 @@ bool Stepper::take_drifts(State& state, double length) {
         if (!drift_with_contact(state, x_drift_, time, length))
             return false;
     }
-    return n_drifts_ == 1 || is_clear_of_surfaces(state, n_drifts_ * length);
+    return n_drifts_ == 1
+           || (has_kept_way(state.x) && is_clear_of_surfaces(state, n_drifts_ * length));
 }
 
 bool Stepper::drift_with_contact(State& state, const Field& x, double time, double length) {
@@ -168,6 +159,18 @@ void Stepper::kick_between_drifts() {
         const Vec3p q = kept * q_moved_[i] + (kick * inverse_mass_[i]) * node_force_[i];
         q_moved_[i] += is_free[i] * (q - q_moved_[i]);
     }
+}
+
+bool Stepper::has_kept_way(const Field& x) const {
+    // The length of the step was chosen by speeds at its start.
+    for (const auto& [begin, end, cell_size, kernel] : ranges_) {
+        double squared = 0;
+        for (int c = begin; c < end; ++c)
+            squared = std::max(squared, dot(x_end_[c] - x[c], x_end_[c] - x[c]));
+        if (squared > std::pow(most_cells * cell_size, 2))
+            return false;
+    }
+    return true;
 }
 
 bool Stepper::is_clear_of_surfaces(const State& state, double dt) {

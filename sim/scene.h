@@ -200,9 +200,11 @@ struct SolverOptions {
     EnrichmentCriteria enrich;
     Steps steps = Steps::Implicit;
     Quadrature quadrature = Quadrature::OnePoint;
-    std::optional<double> dt;  // largest step [s]; empty: a tenth of a frame
-    double grid_ratio = 2;     // background cell / domain edge, >= 1
-    double damping = 0;        // mass-proportional [1/s]
+    // Largest step, of explicit ones largest drift: several share a map while no bodies touch. Empty: a tenth of a
+    // frame.   [s]
+    std::optional<double> dt;
+    double grid_ratio = 2;  // background cell / domain edge, >= 1
+    double damping = 0;     // mass-proportional [1/s]
 };
 
 struct Scene {

@@ -9,10 +9,12 @@ namespace sim {
 
 namespace {
 
-constexpr double growth = 1.1;     // of a step after one that succeeded
-constexpr double shortest = 1e-3;  // step worth trying, as a share of dt
-constexpr double rounding = 1e-6;  // of a number of steps
-constexpr int quiet_before = 4;    // drifts in which no bodies touch, until several make a step
+constexpr double growth = 1.1;           // of a step after one that succeeded
+constexpr double shortest = 1e-3;        // step worth trying, as a share of dt
+constexpr double rounding = 1e-6;        // of a number of steps
+constexpr int life_of_map = 8;           // of one that explicit drifts share, at most, in dt
+constexpr double cells_under_map = 0.1;  // that a corner may pass meanwhile
+constexpr int quiet_per_drift = 2;       // drifts without a touch before, for each of a step
 
 }  // namespace
 
@@ -25,9 +27,10 @@ void Stepper::advance(State& state, double end, double dt) {
         const double remaining = end - state.time;
         const SurfaceContact::Start start = {state.x, state.v, state.top_speed, state.contacts};
         surfaces_.see(start);
-        const double stable = is_explicit ? std::min({dt, limit_of_way(), stable_limit()}) : dt;
+        const double stable =
+            is_explicit ? std::min({dt, limit_of_way(most_cells), stable_limit()}) : dt;
         const double drift = std::min(stable, state.dt_limit);
-        const double longest = may_drift_freely(state) ? longest_of_drifts(drift, dt) : drift;
+        const double longest = may_drift_freely() ? longest_of_drifts(state, drift, dt) : drift;
         const double allowed =
             std::min({longest,
                       colliders_.largest_step(state.x, state.v, state.time, longest),
@@ -35,6 +38,7 @@ void Stepper::advance(State& state, double end, double dt) {
                       relative_limit(state)});
         const double n = std::max(1.0, std::ceil(remaining / allowed - rounding));
         const double length = remaining / n;
+        n_drifts_ = std::max(1, static_cast<int>(std::ceil(length / drift - rounding)));
         if (try_step(state, length)) {
             ++steps;
             state.dt_limit *= std::pow(growth, n_drifts_);
@@ -62,15 +66,25 @@ void Stepper::advance(State& state, double end, double dt) {
     }
 }
 
-double Stepper::longest_of_drifts(double drift, double dt) const {
-    return drift * std::floor(std::min(dt, limit_of_way()) / drift + rounding);
-}
-
-bool Stepper::may_drift_freely(const State& state) const {
+bool Stepper::may_drift_freely() const {
     const bool meets_by_grid =
         scene_.contact.mode == Contact::Mode::Grid && scene_.bodies.size() > 1;
-    return scene_.solver.steps == Steps::Explicit && !has_points_ && !meets_by_grid
-           && state.quiet_drifts >= quiet_before;
+    // Points yield once a step.
+    return scene_.solver.steps == Steps::Explicit && !has_points_ && !meets_by_grid;
+}
+
+double Stepper::longest_of_drifts(const State& state, double drift, double dt) const {
+    // As long as the map may serve. What has touched lately may touch again: then all drifts of the step would be in vain.
+    double life = std::min({life_of_map * dt,
+                            limit_of_way(cells_under_map),
+                            state.quiet_drifts / quiet_per_drift * drift});
+    for (const Pin& pin : scene_.pins) {
+        if (!is_in_force(pin, state.time))
+            continue;
+        const bool turns = std::holds_alternative<Pin::Spin>(pin.moves);  // moves along chords
+        life = std::min(life, turns ? dt : pin.until - state.time);
+    }
+    return drift * std::max(1.0, std::floor(life / drift + rounding));
 }
 
 bool Stepper::try_step(State& state, double dt) {

@@ -25,9 +25,9 @@ class Stepper {
     Stepper(const Scene& scene, Assembly& assembly);
 
     /// Steps by solver.steps until state.time is `end`, in steps no longer than dt, nor than failures and stability
-    /// allow: a step that fails is halved, and grows back slowly. Explicit steps are longer than stability allows while
-    /// no bodies touch: kicks and drifts are then repeated under one map T. Throws Error(Diverged) where halving does
-    /// not help.
+    /// allow: a step that fails is halved, and grows back slowly. Explicit steps are longer while no bodies touch: kicks
+    /// and drifts, no longer than that, are repeated under one map T as long as no corner goes far in the cells of the
+    /// grid. Throws Error(Diverged) where halving does not help.
     void advance(State& state, double end, double dt);
 
     /// Equilibrium of the loads at `time`, reached from `state` by moving the pins there; velocities become zero.
@@ -72,8 +72,8 @@ class Stepper {
 
   private:
     // step_control.cpp
-    bool may_drift_freely(const State& state) const;
-    double longest_of_drifts(double drift, double dt) const;
+    bool may_drift_freely() const;
+    double longest_of_drifts(const State& state, double drift, double dt) const;
     bool try_step(State& state, double dt);
 
     // stepper.cpp: what all steps share
@@ -125,13 +125,13 @@ class Stepper {
 
     // explicit_step.cpp
     double stable_limit() const;
-    double limit_of_way() const;
-    int count_drifts(const State& state, double dt) const;
+    double limit_of_way(double cells) const;
     bool try_explicit(State& state, double dt);
     void first_kick(const State& state);
     bool take_drifts(State& state, double length);
     bool drift_with_contact(State& state, const Field& x, double time, double length);
     void kick_between_drifts();
+    bool has_kept_way(const Field& x) const;
     bool is_clear_of_surfaces(const State& state, double dt);
     bool restrain_by_colliders(const Field& x, double length);
     bool restrain_by_surfaces(const State& state, double dt);
@@ -144,6 +144,8 @@ class Stepper {
                          double time_begin,
                          double time_end,
                          NewtonSummary& summary);
+
+    static constexpr double most_cells = 0.3;  // that a corner may pass in an explicit step
 
     const Scene& scene_;
     Assembly& assembly_;
@@ -185,7 +187,7 @@ class Stepper {
     Field acting_;                     // (#C) forces that go to nodes, at slaves alone [N]
     std::vector<double> speed_;        // (#bodies) of the fastest corner [m/s]
     Field gradient_, end_gradient_;    // of explicit steps, at the start and the end (#C) [N]
-    int n_drifts_ = 1;                 // of the last explicit step
+    int n_drifts_ = 1;                 // of the step, if it is explicit
     Field x_drift_, gradient_before_;  // where its last drift begins, of several (#C) [m], [N]
     Field inner_gradient_;  // Σ over what lies between its drifts, at prescribed corners [N]
 };

@@ -1,8 +1,9 @@
-// Explicit steps longer than stability allows for one drift: several drifts under one map.
+// Explicit steps of several drifts under one map.
 #include "sim/simulation.h"
 #include "tests/support/bar_scene.h"
 #include "tests/support/soft_block.h"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -10,9 +11,10 @@
 
 namespace {
 
-constexpr double frame = 9.5e-3;          // [s]
-constexpr int n_drifts = 22;              // in a frame: of 0.43 ms, the bar is stable at 0.47
-constexpr double long_step = frame / 10;  // there is time for two drifts in it
+constexpr double frame = 9.5e-3;        // [s]
+constexpr double longest = frame / 10;  // dt: there is time for two drifts in it
+constexpr int n_drifts = 22;            // in a frame: of 0.43 ms, the bar is stable at 0.47
+constexpr int n_steps = 2;              // in a frame, as a map serves for 8 dt at most
 
 tests::BarOptions bar(sim::Method method, double dt) {
     tests::BarOptions options;
@@ -25,23 +27,20 @@ tests::BarOptions bar(sim::Method method, double dt) {
 }  // namespace
 
 TEST_CASE(
-    "a step of two drifts moves finite elements as two steps do, and pins pull as their mean",
+    "a step of many drifts moves finite elements as many steps do, and pins pull as their mean",
     "[drifts]") {
-    const auto start = [&](double dt) {
-        sim::Scene scene = tests::bar_scene(bar(sim::Method::Fem, dt));
-        scene.solver.damping = 3;
-        return sim::Simulation(scene, frame);
-    };
-    sim::Simulation longer = start(long_step), shorter = start(frame / n_drifts);
+    sim::Scene scene = tests::bar_scene(bar(sim::Method::Fem, longest));
+    scene.solver.damping = 3;
+    sim::Simulation longer(scene, frame), shorter(scene, frame);
     for (int k = 1; k <= 5; ++k) {
         longer.advance_to(frame * k);
         Vec3 pull{0, 0, 0};
         for (int drift = 1; drift <= n_drifts; ++drift) {
             shorter.advance_to(frame * (k - 1 + double(drift) / n_drifts));
-            if (drift > n_drifts - 2)
-                pull += shorter.pins()[0].force / 2;
+            if (drift > n_drifts - n_drifts / n_steps)
+                pull += shorter.pins()[0].force / (n_drifts / n_steps);
         }
-        REQUIRE(longer.stats().steps == n_drifts / 2);
+        REQUIRE(longer.stats().steps == n_steps);
         const Vec3 tip = shorter.probes()[0].position;
         CHECK((longer.probes()[0].position - tip).norm() < 1e-11);
         CHECK((longer.pins()[0].force - pull).norm() < 1e-6 * pull.norm());
@@ -50,35 +49,76 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("under one map for a long step a bar swings as with a map for each drift",
+TEST_CASE("under one map for many drifts a bar swings as with a map for each drift",
           "[drifts]") {
     // The map is that of where the step begins: its age costs less than the map itself.
     const sim::Method method = GENERATE(sim::Method::Enriched, sim::Method::Domains);
-    const auto tip = [&](double dt, double time) {
-        sim::Simulation simulation(tests::bar_scene(bar(method, dt)), frame);
-        simulation.advance_to(time);
-        return simulation.probes()[0].position;
-    };
     const double swing = 0.15;  // of the tip, down and up again [m]
-    for (const double time : {0.1, 0.2, 0.4}) {
-        const Vec3 by_short = tip(0.4e-3, time), by_long = tip(2e-3, time);
-        CAPTURE(time, by_short.transpose(), by_long.transpose());
-        CHECK((by_long - by_short).norm() < 0.01 * swing);
+    const sim::Scene scene = tests::bar_scene(bar(method, longest));
+    sim::Simulation longer(scene, frame), shorter(scene, frame);
+    int n_of_longer = 0, n_of_shorter = 0;
+    for (int k = 1; k <= 40; ++k) {
+        longer.advance_to(frame * k);
+        n_of_longer += longer.stats().steps;
+        for (int drift = 1; drift <= n_drifts; ++drift) {
+            shorter.advance_to(frame * (k - 1 + double(drift) / n_drifts));
+            n_of_shorter += shorter.stats().steps;
+        }
+        const Vec3 by_longer = longer.probes()[0].position,
+                   by_shorter = shorter.probes()[0].position;
+        CAPTURE(k, by_longer.transpose(), by_shorter.transpose());
+        CHECK((by_longer - by_shorter).norm() < 0.01 * swing);
     }
+    CHECK(n_of_shorter == 40 * n_drifts);
+    CHECK(n_of_longer < n_of_shorter / 6);
 }
 
-TEST_CASE("long explicit steps bounce on the ground as short ones do", "[drifts]") {
+TEST_CASE("a pin that turns leads its corners along a circle under any map", "[drifts]") {
+    // Within a step its corners move along a chord: steps stay as short as dt.
+    sim::Scene scene = tests::bar_scene(bar(sim::Method::Fem, longest));
+    scene.forces.clear();
+    const double rate = 2;  // [1/s]
+    REQUIRE(scene.pins.size() == 1);
+    scene.pins[0].select = {sim::Selector::HalfSpace{{9, 0, 0}, {1, 0, 0}}, {}};  // all of it
+    scene.pins[0].moves = sim::Pin::Spin{{0, 0, 1}, {0, 0, 0}, rate};
+    sim::Simulation simulation(scene, frame);
+    const Vec3 start = simulation.probes()[0].position;
+    simulation.advance_to(frame);
+    const Vec3 end = Eigen::AngleAxisd(rate * frame, Vec3::UnitZ()) * start;
+    CHECK((simulation.probes()[0].position - end).norm() < 1e-12);
+    CHECK(simulation.stats().steps >= 10);
+}
+
+TEST_CASE("a pin lets go in time though a map could serve longer", "[drifts]") {
+    // Released in the middle of what a step could be, the bar falls freely from then on.
+    const double released = 0.3 * frame, g = 10;
+    sim::Scene scene = tests::bar_scene(bar(sim::Method::Fem, longest));
+    scene.forces = {sim::Gravity{{0, 0, -g}}};
+    REQUIRE(scene.pins.size() == 1);
+    scene.pins[0].select = {sim::Selector::HalfSpace{{9, 0, 0}, {1, 0, 0}}, {}};  // all of it
+    scene.pins[0].until = released;
+    sim::Simulation simulation(scene, frame);
+    const Vec3 start = simulation.probes()[0].position;
+    simulation.advance_to(frame);
+    const double way = start.z() - simulation.probes()[0].position.z();
+    // In the drift that begins before.
+    CHECK(way <= g / 2 * std::pow(frame - released, 2));
+    CHECK(way >= g / 2 * std::pow(frame - released - frame / n_drifts, 2));
+}
+
+TEST_CASE("steps of many drifts bounce on the ground as single drifts do", "[drifts]") {
     // Every drift meets colliders. A cube of 1 MPa is stable at 0.9 ms; it falls by 0.2 m and sticks to nothing.
     const sim::Method method = GENERATE(sim::Method::Fem, sim::Method::Domains);
+    const double moment = 0.006;  // [s]
 
     struct Course {
         double deepest = 0, rebound = 0;  // [domain edges], [m]
         int steps = 0;
     };
 
-    const auto fall = [&](double dt) {
+    const auto fall = [&](int stops_per_moment) {
         sim::Scene scene;
-        scene.solver = bar(method, dt).solver;
+        scene.solver = bar(method, moment).solver;
         scene.bodies = {tests::soft_block("cube", {0, 0, 0.2}, Vec3::Constant(0.3), 0.05, 1e6)};
         scene.forces.push_back(sim::Gravity{{0, 0, -10}});
         sim::Collider ground;
@@ -87,17 +127,17 @@ TEST_CASE("long explicit steps bounce on the ground as short ones do", "[drifts]
         scene.probes = {{"cube", "cube", std::string("all")}};
         sim::Simulation simulation(scene, frame);
         Course course;
-        for (int k = 1; k <= 60; ++k) {
-            simulation.advance_to(0.006 * k);
+        for (int k = 1; k <= 60 * stops_per_moment; ++k) {
+            simulation.advance_to(moment * k / stops_per_moment);
             const sim::Stats stats = simulation.stats();
             course.deepest = std::max(course.deepest, stats.collider_penetration);
             course.steps += stats.steps;
-            if (k > 40)
+            if (k > 40 * stops_per_moment)
                 course.rebound = std::max(course.rebound, simulation.probes()[0].position.z());
         }
         return course;
     };
-    const Course by_short = fall(0.5e-3), by_long = fall(6e-3);
+    const Course by_short = fall(12), by_long = fall(1);
     CAPTURE(int(method),
             by_short.rebound,
             by_long.rebound,
