@@ -22,7 +22,7 @@ constexpr double rounding = 1e-9;  // of distances, in domain edges
 
 FoldWatch::FoldWatch(const ContactSurface& surface) : surface_(&surface), vertices_(surface) {
     const Lattice& lattice = *surface.lattice;
-    double of_vertex = 1;  // the most that one moves, when its corners move by 1
+    double of_vertex = 1;  // the sum of its weights without their signs, at most
     for (const ContactVertex& vertex : surface.vertices) {
         double sum = 0;
         for (const double w : vertex.weights)
@@ -30,7 +30,7 @@ FoldWatch::FoldWatch(const ContactSurface& surface) : surface_(&surface), vertic
         of_vertex = std::max(of_vertex, sum);
     }
     const double of_continued = std::pow(1 + 2 * beyond_domain, 3);
-    of_gaps_ = (of_vertex + of_continued) / 2;
+    of_strain_ = (of_vertex - 1) / 2 + (of_continued - 1) / 2;
 
     Vec3 rest_centre = Vec3::Zero();
     for (const Vec3& X : lattice.corner_rest)
@@ -52,7 +52,8 @@ double FoldWatch::change_at_most(const Field& x) {
     now_ = sums.frame(from_rest_centre_.size());
     // Rᵀ a with a between two corners: the change of a, and the turn of what it was.
     return change_seen_
-           + of_gaps_ * (moved.farthest(moved) + now_.turn_from(frame_seen_) * wide_seen_)
+           + (1 + of_strain_)
+                 * (moved.farthest(moved) + now_.turn_from(frame_seen_) * wide_seen_)
            + rounding * surface_->lattice->edge;
 }
 
@@ -66,7 +67,20 @@ double FoldWatch::see(const Field& x) {
     }
     frame_seen_ = now_;
     wide_seen_ = all.farthest(all);
-    return of_gaps_ * moved.farthest(moved) + rounding * surface_->lattice->edge;
+    return moved.farthest(moved) + of_strain_ * most_strained()
+           + rounding * surface_->lattice->edge;
+}
+
+double FoldWatch::most_strained() const {
+    double squared = 0;
+    for (const int p : surface_->shell) {
+        PaddedBounds moved;
+        for (const int c : surface_->lattice->corners[p])
+            moved.add(seen_[c] - looked_at_[c]);
+        const Vec3p apart = moved.high - moved.low;
+        squared = std::max(squared, dot(apart, apart));
+    }
+    return std::sqrt(squared);
 }
 
 void FoldWatch::look(double within) {

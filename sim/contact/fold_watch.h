@@ -33,12 +33,16 @@ class FoldWatch {
     // By how much any gap has changed since look(), at most: a bound by one pass, and a closer one that sees all corners.
     double change_at_most(const Field& x);
     double see(const Field& x);
+    double most_strained() const;  // corners of a domain since the last look [m]
     void look(double within);
     void look_at(int p, double within, std::vector<Near>& near) const;
     bool is_in(const Near& near, const Field& x) const;
 
     const ContactSurface* surface_;
-    double of_gaps_ = 1;      // the most that a gap changes, when no two corners part by more
+    // A gap changes by no more than two corners part, plus this many times what corners of one domain part: the weights of
+    // a place beyond a domain sum to 1 + e above zero and to -e below, so it moves as a mean of corners and e times what
+    // they part.
+    double of_strain_ = 0;
     Field from_rest_centre_;  // (#corners) [m]
     VertexGrid vertices_;
 

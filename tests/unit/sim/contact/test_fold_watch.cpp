@@ -154,6 +154,30 @@ TEST_CASE("a folded strip meets itself along its inner sides alone") {
     CHECK(has_met);
 }
 
+TEST_CASE(
+    "arms that swell towards each other meet, though what is beyond them moves further than "
+    "they") {
+    const int n = 24;
+    const Block strip({n, 3, 1});
+    sim::FoldWatch watch(strip.surface);
+    const double length = n * edge;
+    // Only a little further apart than vertices are listed; the bend does not swell, nor do the arms' outer sides move.
+    const double radius = 1.1 * edge;
+    bool has_met = false;
+    for (double swollen = 0; swollen < 0.5; swollen += 0.004) {
+        const Field x = strip.moved([&](const Vec3& X) {
+            const double from_end = std::min(X.x(), length - X.x());
+            const double much = from_end < 8.5 * edge ? swollen : 0;
+            return hairpin({X.x(), X.y(), (1 + much) * X.z()}, length, edge, radius);
+        });
+        const std::vector<int> strangers = watch.strangers(x);
+        CAPTURE(swollen);
+        CHECK(strangers == sim::FoldWatch(strip.surface).strangers(x));
+        has_met |= strangers.size() > 50;
+    }
+    CHECK(has_met);
+}
+
 TEST_CASE("a strip that curls up meets its other end, far from it at first") {
     const int n = 30;
     const Block strip({n, 2, 1});
