@@ -1,7 +1,6 @@
 #include "sim/contact/contact_search.h"
 
 #include "sim/base/parallel.h"
-#include "sim/contact/point_grid.h"
 #include "sim/embedding/trilinear.h"
 
 #include <Eigen/LU>
@@ -26,9 +25,9 @@ constexpr double seam =
 struct Candidate {
     int domain = 0;
     std::array<Vec3, 8> corners;
-    Vec3 centre{0, 0, 0};
-    Mat3 to_local;
-    double radius = 0;
+    DomainBall ball;
+    bool is_inverted = false;
+    Mat3 to_local = Mat3::Zero();  // where it is not inverted
 };
 
 /// Where a point is in a body.
@@ -71,31 +70,29 @@ bool invert_trilinear(const std::array<Vec3, 8>& corners, const Vec3& point, Vec
 class Search {
   public:
     Search(const ContactSurface& of_vertices,
-           std::span<const int> vertices,
+           const NearDomains& near,
            const ContactSurface& of_domains,
            const Field& x,
            const Field& x_n,
            double margin)
         : a_(of_vertices),
-          vertices_(vertices),
+          near_(near),
           b_(of_domains),
           x_(x),
           x_n_(x_n),
           margin_(margin),
-          beyond_(margin / of_domains.lattice->edge),
-          points_(points()),
-          candidates_(candidates()),
-          grid_(centres(), search_radius_) {}
+          beyond_(margin / of_domains.lattice->edge) {
+        for (const int p : near.domains)
+            candidates_.push_back(candidate(p));
+    }
 
     std::vector<ContactPoint> run() const {
-        if (candidates_.empty())
-            return {};
         // Vertices in chunks of a fixed size, their contacts in order.
-        const int n = static_cast<int>(vertices_.size());
+        const int n = static_cast<int>(near_.vertices.size());
         std::vector<std::vector<ContactPoint>> parts((n + vertex_chunk - 1) / vertex_chunk);
         for_chunks(n, vertex_chunk, [&](int begin, int end) {
             for (int k = begin; k < end; ++k)
-                look_at(a_.vertices[vertices_[k]], points_[k], parts[begin / vertex_chunk]);
+                look_at(k, parts[begin / vertex_chunk]);
         });
         std::vector<ContactPoint> found;
         for (const std::vector<ContactPoint>& part : parts)
@@ -104,82 +101,45 @@ class Search {
     }
 
   private:
-    std::vector<Vec3> points() const {
-        std::vector<Vec3> result;
-        result.reserve(vertices_.size());
-        for (const int v : vertices_)
-            result.push_back(a_.vertices[v].position(x_));
-        return result;
-    }
-
-    /// Domains of the shell that are near the vertices.
-    std::vector<Candidate> candidates() {
-        if (points_.empty())
-            return {};
-        Bounds region;
-        for (const Vec3& point : points_)
-            region.add(point);
-        std::vector<Candidate> result;
-        for (const int p : b_.shell) {
-            Candidate candidate;
-            candidate.domain = p;
-            candidate.corners = b_.domain_corners(p, x_);
-            for (const Vec3& corner : candidate.corners)
-                candidate.centre += corner / 8;
-            for (const Vec3& corner : candidate.corners)
-                candidate.radius =
-                    std::max(candidate.radius, (corner - candidate.centre).norm());
-            candidate.radius *= 1 + 2 * beyond_;
-            const Mat3 gradient = trilinear_gradient(Vec3::Constant(0.5), 1, candidate.corners);
-            if (!(gradient.determinant() > 0)
-                || !region.contains(candidate.centre, candidate.radius))
-                continue;
+    Candidate candidate(int p) const {
+        Candidate candidate{p, b_.domain_corners(p, x_), {b_.padded_corners(p, x_), beyond_}};
+        const Mat3 gradient = trilinear_gradient(Vec3::Constant(0.5), 1, candidate.corners);
+        candidate.is_inverted = !(gradient.determinant() > 0);
+        if (!candidate.is_inverted)
             candidate.to_local = gradient.inverse();
-            search_radius_ = std::max(search_radius_, candidate.radius);
-            bounds_.add(candidate.centre);
-            result.push_back(candidate);
-        }
-        return result;
+        return candidate;
     }
 
-    std::vector<Vec3> centres() const {
-        std::vector<Vec3> result;
-        for (const Candidate& candidate : candidates_)
-            result.push_back(candidate.centre);
-        return result;
-    }
-
-    void look_at(const ContactVertex& vertex,
-                 const Vec3& point,
-                 std::vector<ContactPoint>& found) const {
-        if (!bounds_.contains(point, search_radius_))
-            return;
-        const Place place = locate(vertex, point);
+    void look_at(int k, std::vector<ContactPoint>& found) const {
+        const ContactVertex& vertex = a_.vertices[near_.vertices[k]];
+        const Place place = locate(vertex, vertex.position(x_), near_.of_vertex(k));
         ContactPoint contact;
         if (place.domain >= 0 && linearize_gap(vertex, place, contact)
             && contact.gap <= margin_)
             found.push_back(contact);
     }
 
-    Place locate(const ContactVertex& vertex, const Vec3& point) const {
+    Place locate(const ContactVertex& vertex,
+                 const Vec3& point,
+                 std::span<const int> nearby) const {
         Place best;
-        grid_.near(point, [&](int i) {
+        for (const int i : nearby) {
             const Candidate& candidate = candidates_[i];
-            const Vec3 from_centre = point - candidate.centre;
-            if (from_centre.squaredNorm() > candidate.radius * candidate.radius)
-                return;
-            Vec3 xi = Vec3::Constant(0.5) + candidate.to_local * from_centre;
+            if (candidate.is_inverted || !candidate.ball.holds(padded(point)))
+                continue;
+            Vec3 xi = Vec3::Constant(0.5)
+                      + candidate.to_local * (point - unpadded(candidate.ball.centre));
             if (outside_of_cube(xi) > std::min(beyond_, best.outside) + curvature
                 || is_neighbour(vertex, candidate.domain)
                 || !invert_trilinear(candidate.corners, point, xi))
-                return;
+                continue;
             const double outside = outside_of_cube(xi);
             if (outside > beyond_ || outside > best.outside
                 || (outside == best.outside && candidate.domain > best.domain)
                 || (outside > seam && is_in_another(candidate.domain, xi)))
-                return;
+                continue;
             best = {candidate.domain, xi, outside};
-        });
+        }
         return best;
     }
 
@@ -264,16 +224,12 @@ class Search {
     }
 
     const ContactSurface& a_;
-    std::span<const int> vertices_;
+    const NearDomains& near_;
     const ContactSurface& b_;
     const Field &x_, &x_n_;
     double margin_ = 0;
-    double beyond_ = 0;         // a domain that its map is continued, in domain edges
-    double search_radius_ = 0;  // around the centre of any candidate that it may hold [m]
-    Bounds bounds_;             // of the candidates' centres
-    std::vector<Vec3> points_;  // (#vertices) where they are [m]
-    std::vector<Candidate> candidates_;
-    PointGrid grid_;
+    double beyond_ = 0;                  // a domain that its map is continued, in domain edges
+    std::vector<Candidate> candidates_;  // of near_.domains
 };
 
 }  // namespace
@@ -284,7 +240,22 @@ std::vector<ContactPoint> find_contacts(const ContactSurface& of_vertices,
                                         const Field& x,
                                         const Field& x_n,
                                         double margin) {
-    return Search(of_vertices, vertices, of_domains, x, x_n, margin).run();
+    const double beyond = margin / of_domains.lattice->edge;
+    return find_listed_contacts(of_vertices,
+                                near_domains(of_vertices, vertices, of_domains, x, beyond, 0),
+                                of_domains,
+                                x,
+                                x_n,
+                                margin);
+}
+
+std::vector<ContactPoint> find_listed_contacts(const ContactSurface& of_vertices,
+                                               const NearDomains& near,
+                                               const ContactSurface& of_domains,
+                                               const Field& x,
+                                               const Field& x_n,
+                                               double margin) {
+    return Search(of_vertices, near, of_domains, x, x_n, margin).run();
 }
 
 }  // namespace sim

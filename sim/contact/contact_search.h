@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/contact/contact_point.h"
+#include "sim/contact/near_domains.h"
 
 #include <span>
 #include <vector>
@@ -23,6 +24,14 @@ std::vector<ContactPoint> find_contacts(const ContactSurface& of_vertices,
                                         const Field& x,
                                         const Field& x_n,
                                         double margin);
+
+/// The same where near_domains() has listed them, with the margin or more.
+std::vector<ContactPoint> find_listed_contacts(const ContactSurface& of_vertices,
+                                               const NearDomains& near,
+                                               const ContactSurface& of_domains,
+                                               const Field& x,
+                                               const Field& x_n,
+                                               double margin);
 
 constexpr double neighbourhood = 2.5;
 

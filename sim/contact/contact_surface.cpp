@@ -127,6 +127,13 @@ std::array<Vec3, 8> ContactSurface::domain_corners(int p, const Field& x) const 
     return corners;
 }
 
+std::array<Vec3p, 8> ContactSurface::padded_corners(int p, const Field& x) const {
+    std::array<Vec3p, 8> corners;
+    for (int a = 0; a < 8; ++a)
+        corners[a] = x[begin + lattice->corners[p][a]];
+    return corners;
+}
+
 std::vector<int> ContactSurface::all_vertices() const {
     std::vector<int> indices(vertices.size());
     std::iota(indices.begin(), indices.end(), 0);

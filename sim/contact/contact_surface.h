@@ -67,6 +67,7 @@ struct ContactSurface {
 
     /// Now, from the field of all corners x.   (8) [m]
     std::array<Vec3, 8> domain_corners(int p, const Field& x) const;
+    std::array<Vec3p, 8> padded_corners(int p, const Field& x) const;
     Bounds bounds(const Field& x) const;
 
     std::vector<int> all_vertices() const;  // 0, 1, 2...

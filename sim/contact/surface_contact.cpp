@@ -29,7 +29,7 @@ constexpr double least_margin =
 }  // namespace
 
 SurfaceContact::SurfaceContact(std::vector<ContactSurface> bodies, const PairFriction& friction)
-    : bodies_(std::move(bodies)) {
+    : bodies_(std::move(bodies)), near_(bodies_) {
     const int n = static_cast<int>(bodies_.size());
     for (int a = 0; a < n; ++a) {
         folds_.emplace_back(bodies_[a]);
@@ -137,9 +137,7 @@ void SurfaceContact::begin_step(const Start& start, const Field& x_expected, dou
             std::max(rest_recovery * edge, pair.is_self() ? 0 : impact_recovery * speed) * dt;
         pair.top_speed = start.top_speed[bodies_[pair.of_vertices].scene_body]
                          + start.top_speed[bodies_[pair.of_domains].scene_body];
-        pair.vertices.clear();
-        if (!pair.is_self() && distance(pair, extents_) <= pair.margin)
-            pair.vertices = bodies_[pair.of_vertices].all_vertices();
+        pair.is_near = !pair.is_self() && distance(pair, extents_) <= pair.margin;
     }
     find(x_expected);
 }
@@ -147,18 +145,21 @@ void SurfaceContact::begin_step(const Start& start, const Field& x_expected, dou
 void SurfaceContact::find(const Field& x) {
     contacts_.clear();
     rows_.clear();
-    for (std::size_t k = 0; k < pairs_.size(); ++k) {
-        Pair& pair = pairs_[k];
-        if (pair.is_self())
-            pair.vertices = folds_[pair.of_domains].strangers(x);
-        for (const ContactPoint& point : find_contacts(bodies_[pair.of_vertices],
-                                                       pair.vertices,
-                                                       bodies_[pair.of_domains],
-                                                       x,
-                                                       x_n_,
-                                                       pair.margin))
+    near_.see();
+    for (std::size_t k = 0; k < pairs_.size(); ++k)
+        for (const ContactPoint& point : found(pairs_[k], x))
             contacts_.push_back(prepared(point, static_cast<int>(k)));
-    }
+}
+
+std::vector<ContactPoint> SurfaceContact::found(const Pair& pair, const Field& x) {
+    const ContactSurface &a = bodies_[pair.of_vertices], &b = bodies_[pair.of_domains];
+    if (pair.is_self())
+        return find_contacts(a, folds_[pair.of_domains].strangers(x), b, x, x_n_, pair.margin);
+    if (!pair.is_near)
+        return {};
+    const NearDomains& near =
+        near_.near(pair.of_vertices, pair.of_domains, x, pair.margin / b.lattice->edge);
+    return find_listed_contacts(a, near, b, x, x_n_, pair.margin);
 }
 
 SurfaceContact::Contact SurfaceContact::prepared(const ContactPoint& point, int k) const {

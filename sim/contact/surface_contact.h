@@ -5,6 +5,7 @@
 #include "sim/contact/contact_point.h"
 #include "sim/contact/fold_watch.h"
 #include "sim/contact/grip.h"
+#include "sim/contact/near_domains.h"
 #include "sim/contact/pair_friction.h"
 #include "sim/grid/corner_map.h"
 
@@ -102,7 +103,7 @@ class SurfaceContact : public ContactEnergy {
     struct Pair {
         int of_vertices = 0, of_domains = 0;  // bodies
         Friction friction;
-        std::vector<int> vertices = {};                  // that may touch in this step
+        bool is_near = false;  // two bodies that may touch in this step
         double margin = 0, recovery = 0, top_speed = 0;  // of this step [m], [m], [m/s]
 
         bool is_self() const { return of_vertices == of_domains; }
@@ -134,12 +135,14 @@ class SurfaceContact : public ContactEnergy {
     /// Whether a body may touch itself within dt, when no two of its corners near each other by more than `way` [m].
     bool may_fold(const Pair& pair, const Start& start, double way, double dt);
     void find(const Field& x);
+    std::vector<ContactPoint> found(const Pair& pair, const Field& x);
     double mismatch(const std::vector<Contact>& before, const Field& x) const;
     Contact prepared(const ContactPoint& point, int pair) const;
     double held_energy(int pair, int vertex) const;
 
     std::vector<ContactSurface> bodies_;
     std::vector<FoldWatch> folds_;  // (#bodies)
+    NearDomainLists near_;
     std::vector<Pair> pairs_;
     std::vector<Extent> extents_;    // (#bodies) at the start of the step
     std::vector<Contact> contacts_;  // by pair, then vertex

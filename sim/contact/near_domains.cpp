@@ -1,0 +1,146 @@
+#include "sim/contact/near_domains.h"
+
+#include "sim/contact/point_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sim {
+
+namespace {
+
+constexpr double listed_ahead = 0.25;  // in domain edges
+constexpr double most_used =
+    0.3;  // of that from one call to the next; where bodies move by more, nothing is listed ahead
+constexpr double rounding = 1e-9;  // of distances, in domain edges
+
+}  // namespace
+
+NearDomains near_domains(const ContactSurface& of_vertices,
+                         std::span<const int> vertices,
+                         const ContactSurface& of_domains,
+                         const Field& x,
+                         double beyond,
+                         double ahead) {
+    NearDomains near;
+    if (vertices.empty())
+        return near;
+    std::vector<Vec3> points;
+    Bounds region;
+    for (const int v : vertices) {
+        points.push_back(of_vertices.vertices[v].position(x));
+        region.add(points.back());
+    }
+    // Balls of the shell that reach there.
+    std::vector<int> domains;
+    std::vector<DomainBall> balls;
+    std::vector<Vec3> centres;
+    double largest = 0;
+    for (const int p : of_domains.shell) {
+        DomainBall ball(of_domains.padded_corners(p, x), beyond);
+        ball.radius += ahead;
+        if (!region.contains(unpadded(ball.centre), ball.radius))
+            continue;
+        domains.push_back(p);
+        balls.push_back(ball);
+        centres.push_back(unpadded(ball.centre));
+        largest = std::max(largest, ball.radius);
+    }
+    if (domains.empty())
+        return near;
+    const PointGrid grid(centres, largest);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const std::size_t begin = near.nearby.size();
+        grid.near(points[k], [&](int i) {
+            if (balls[i].holds(padded(points[k])))
+                near.nearby.push_back(i);
+        });
+        if (near.nearby.size() == begin)
+            continue;
+        std::sort(near.nearby.begin() + static_cast<std::ptrdiff_t>(begin), near.nearby.end());
+        near.vertices.push_back(vertices[k]);
+        near.first.push_back(static_cast<int>(near.nearby.size()));
+    }
+    // Only domains that hold any.
+    std::vector<int> place(domains.size(), -1);
+    for (const int i : near.nearby)
+        place[i] = 0;
+    for (std::size_t i = 0; i < domains.size(); ++i)
+        if (place[i] == 0) {
+            place[i] = static_cast<int>(near.domains.size());
+            near.domains.push_back(domains[i]);
+        }
+    for (int& i : near.nearby)
+        i = place[i];
+    return near;
+}
+
+NearDomainLists::NearDomainLists(std::span<const ContactSurface> bodies)
+    : bodies_(bodies), lists_(bodies.size() * bodies.size()), moved_(bodies.size()) {
+    for (const ContactSurface& body : bodies) {
+        double most = 1;
+        for (const ContactVertex& vertex : body.vertices) {
+            double sum = 0;
+            for (const double w : vertex.weights)
+                sum += std::abs(w);
+            most = std::max(most, sum);
+        }
+        of_vertex_.push_back(most);
+    }
+}
+
+void NearDomainLists::see() {
+    moved_.assign(bodies_.size(), std::nullopt);
+    is_at_look_ = false;
+    ++n_seen_;
+}
+
+const PaddedBounds& NearDomainLists::moved(int b, const Field& x) {
+    if (!moved_[b]) {
+        PaddedBounds& moved = moved_[b].emplace();
+        const int begin = bodies_[b].begin, end = begin + bodies_[b].lattice->n_corners();
+        for (int c = begin; c < end; ++c)
+            moved.add(x[c] - looked_at_[c]);
+    }
+    return *moved_[b];
+}
+
+double NearDomainLists::approach(int a, int b, const Field& x, double beyond) {
+    // A vertex moves in the box of what its corners move, made wider where not all of its weights are positive; the centre
+    // of a domain in that of its own, and its corners from there by no more than the size of that.
+    const PaddedBounds &of_a = moved(a, x), &of_b = moved(b, x);
+    const Vec3p middle = (of_a.low + of_a.high) / 2,
+                half = of_vertex_[a] * (of_a.high - middle);
+    const PaddedBounds of_vertex{middle - half, middle + half};
+    return of_vertex.farthest(of_b) + (1 + 2 * beyond) * of_b.farthest(of_b)
+           + rounding * bodies_[b].lattice->edge;
+}
+
+void NearDomainLists::look(const Field& x, double way) {
+    double edge = std::numeric_limits<double>::infinity();
+    for (const ContactSurface& body : bodies_)
+        edge = std::min(edge, body.lattice->edge);
+    ahead_ = way < n_seen_ * most_used * listed_ahead * edge ? listed_ahead * edge : 0;
+    looked_at_ = x;
+    moved_.assign(bodies_.size(), std::nullopt);
+    n_seen_ = 0;
+    is_at_look_ = true;
+    for (List& list : lists_)
+        list.is_made = false;
+}
+
+const NearDomains& NearDomainLists::near(int a, int b, const Field& x, double beyond) {
+    List& list = lists_[a * bodies_.size() + b];
+    const double way = looked_at_.empty() ? 0 : approach(a, b, x, beyond);
+    if (!(list.is_made && beyond <= list.beyond && way <= ahead_)) {
+        if (!is_at_look_)
+            look(x, way);
+        list.near =
+            near_domains(bodies_[a], bodies_[a].all_vertices(), bodies_[b], x, beyond, ahead_);
+        list.beyond = beyond;
+        list.is_made = true;
+    }
+    return list.near;
+}
+
+}  // namespace sim
