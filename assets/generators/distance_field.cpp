@@ -9,14 +9,23 @@ namespace assets {
 
 namespace {
 
-/// Quadratic B-spline at offset d in [-1/2, 1/2] from the middle one of three values: weights, and their derivatives.
-struct Spline {
-    explicit Spline(double d)
-        : w{0.5 * (0.5 - d) * (0.5 - d), 0.75 - d * d, 0.5 * (0.5 + d) * (0.5 + d)},
-          dw{d - 0.5, -2 * d, d + 0.5} {}
+/// A value and its derivatives along x, y and z.
+using Jet [[gnu::vector_size(32)]] = double;
 
-    double w[3], dw[3];
-};
+/// Quadratic B-spline along one axis at offset d in [-1/2, 1/2] from the middle one of three values: their weights in the
+/// value, and in the derivatives, of which the one along this axis has others.
+std::array<Jet, 3> spline(double d, int axis) {
+    const double w[3] = {0.5 * (0.5 - d) * (0.5 - d),
+                         0.75 - d * d,
+                         0.5 * (0.5 + d) * (0.5 + d)},
+                 dw[3] = {d - 0.5, -2 * d, d + 0.5};
+    std::array<Jet, 3> weights;
+    for (int i = 0; i < 3; ++i) {
+        weights[i] = Jet{} + w[i];
+        weights[i][1 + axis] = dw[i];
+    }
+    return weights;
+}
 
 }  // namespace
 
@@ -58,24 +67,26 @@ double DistanceField::at(const Vec3& x, Vec3& gradient) const {
 }
 
 double DistanceField::interpolated(const Vec3& scaled, Vec3& gradient) const {
-    int middle[3];
-    for (int axis = 0; axis < 3; ++axis)
-        middle[axis] = static_cast<int>(std::floor(scaled[axis] + 0.5));
-    const Spline a(scaled[0] - middle[0]), b(scaled[1] - middle[1]), c(scaled[2] - middle[2]);
-    double distance = 0;
-    gradient = Vec3::Zero();
-    for (int k = 0; k < 3; ++k)
-        for (int j = 0; j < 3; ++j)
-            for (int i = 0; i < 3; ++i) {
-                const double f = value(middle[0] + i - 1, middle[1] + j - 1, middle[2] + k - 1);
-                distance += f * (a.w[i] * b.w[j] * c.w[k]);
-                gradient += f
-                            * Vec3(a.dw[i] * b.w[j] * c.w[k],
-                                   a.w[i] * b.dw[j] * c.w[k],
-                                   a.w[i] * b.w[j] * c.dw[k]);
-            }
-    gradient /= voxel_;
-    return distance;
+    std::size_t lowest[3];
+    std::array<Jet, 3> weights[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const double middle = std::floor(scaled[axis] + 0.5);
+        lowest[axis] = static_cast<std::size_t>(middle) - 1;
+        weights[axis] = spline(scaled[axis] - middle, axis);
+    }
+    const auto& [wx, wy, wz] = weights;
+    Jet sum{};
+    for (int k = 0; k < 3; ++k) {
+        Jet plane{};
+        for (int j = 0; j < 3; ++j) {
+            const float* row =
+                &values_[lowest[0] + n_[0] * (lowest[1] + j + n_[1] * (lowest[2] + k))];
+            plane += wy[j] * (row[0] * wx[0] + row[1] * wx[1] + row[2] * wx[2]);
+        }
+        sum += wz[k] * plane;
+    }
+    gradient = Vec3(sum[1], sum[2], sum[3]) / voxel_;
+    return sum[0];
 }
 
 }  // namespace assets

@@ -24,13 +24,6 @@ class DistanceField {
   private:
     double interpolated(const Vec3& scaled, Vec3& gradient) const;
 
-    double value(int i, int j, int k) const {
-        return values_[static_cast<std::size_t>(i)
-                       + n_[0]
-                             * (static_cast<std::size_t>(j)
-                                + n_[1] * static_cast<std::size_t>(k))];
-    }
-
     Vec3 low_{0, 0, 0};  // of the grid's first value [m]
     double voxel_ = 0;
     double clearance_ =
