@@ -1,6 +1,8 @@
 #include "sim/contact/contact_search.h"
 
+#include "sim/base/floor.h"
 #include "sim/base/parallel.h"
+#include "sim/contact/domain_map.h"
 #include "sim/embedding/trilinear.h"
 
 #include <Eigen/LU>
@@ -13,8 +15,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int vertex_chunk = 256;
-constexpr double curvature =
-    0.25;  // of a domain's map, by which its linear part may err, in domain edges
 constexpr int bisections = 6;  // of the way into a body
 constexpr double least_gradient =
     0.1;  // of the distance; where it is less, in the middle of a body, no side is nearer
@@ -24,17 +24,18 @@ constexpr double seam =
 /// A deformed domain, and the linear part of the map from the world to its cube.
 struct Candidate {
     int domain = 0;
-    std::array<Vec3, 8> corners;
     DomainBall ball;
-    bool is_inverted = false;
-    Mat3 to_local = Mat3::Zero();  // where it is not inverted
+    DomainMap map;
+    Gradient3 at_centre;
+    double bend = 0;  // DomainMap::bend, as far as it is continued
 };
 
 /// Where a point is in a body.
 struct Place {
     int domain = -1;
-    Vec3 xi{0, 0, 0};
-    double outside = infinity;  // of [0,1]³
+    Vec3p u{};                  // of the domain's map
+    double outside = infinity;  // of the domain
+    const DomainMap* map = nullptr;
 };
 
 /// A piece of a body's surface at rest, seen from a rest point: how far outside, and its gradient.
@@ -43,28 +44,8 @@ struct Plane {
     Vec3 normal{0, 0, 0};
 };
 
-double outside_of_cube(const Vec3& xi) {
-    return (-xi).cwiseMax(xi - Vec3::Ones()).cwiseMax(0.0).maxCoeff();
-}
-
-/// Newton's method from xi for its trilinear map to hit a point; false where the domain is inverted or too distorted.
-bool invert_trilinear(const std::array<Vec3, 8>& corners, const Vec3& point, Vec3& xi) {
-    for (int iteration = 0; iteration < 8; ++iteration) {
-        const auto w = trilinear_weights(xi);
-        Vec3 at = Vec3::Zero();
-        for (int a = 0; a < 8; ++a)
-            at += w[a] * corners[a];
-        const Mat3 gradient = trilinear_gradient(xi, 1, corners);
-        if (!(gradient.determinant() > 0))
-            return false;
-        const Vec3 step = gradient.inverse() * (point - at);
-        xi += step;
-        if (!(xi.cwiseAbs().maxCoeff() < 4))
-            return false;
-        if (step.squaredNorm() < 1e-24)
-            break;
-    }
-    return true;
+double outside_of_cube(const Vec3p& u) {
+    return std::max(0.0, largest_entry(larger(u, -u)) - 0.5);
 }
 
 class Search {
@@ -102,17 +83,15 @@ class Search {
 
   private:
     Candidate candidate(int p) const {
-        Candidate candidate{p, b_.domain_corners(p, x_), {b_.padded_corners(p, x_), beyond_}};
-        const Mat3 gradient = trilinear_gradient(Vec3::Constant(0.5), 1, candidate.corners);
-        candidate.is_inverted = !(gradient.determinant() > 0);
-        if (!candidate.is_inverted)
-            candidate.to_local = gradient.inverse();
-        return candidate;
+        const std::array<Vec3p, 8> corners = b_.domain_corners(p, x_);
+        const DomainMap map(corners);
+        const Gradient3 at_centre = map.gradient_at_centre();
+        return {p, {corners, beyond_}, map, at_centre, map.bend(at_centre, 0.5 + beyond_)};
     }
 
     void look_at(int k, std::vector<ContactPoint>& found) const {
         const ContactVertex& vertex = a_.vertices[near_.vertices[k]];
-        const Place place = locate(vertex, vertex.position(x_), near_.of_vertex(k));
+        const Place place = locate(vertex, vertex.padded_position(x_), near_.of_vertex(k));
         ContactPoint contact;
         if (place.domain >= 0 && linearize_gap(vertex, place, contact)
             && contact.gap <= margin_)
@@ -120,25 +99,25 @@ class Search {
     }
 
     Place locate(const ContactVertex& vertex,
-                 const Vec3& point,
+                 const Vec3p& point,
                  std::span<const int> nearby) const {
         Place best;
         for (const int i : nearby) {
             const Candidate& candidate = candidates_[i];
-            if (candidate.is_inverted || !candidate.ball.holds(padded(point)))
+            if (!candidate.ball.holds(point) || !(candidate.at_centre.determinant > 0))
                 continue;
-            Vec3 xi = Vec3::Constant(0.5)
-                      + candidate.to_local * (point - unpadded(candidate.ball.centre));
-            if (outside_of_cube(xi) > std::min(beyond_, best.outside) + curvature
+            Vec3p u = candidate.at_centre.solve(point - candidate.map.centre());
+            if (outside_of_cube(u) > std::min(beyond_, best.outside) + candidate.bend
                 || is_neighbour(vertex, candidate.domain)
-                || !invert_trilinear(candidate.corners, point, xi))
+                || is_in_another(candidate.domain, u, candidate.bend)
+                || !candidate.map.invert(point, u))
                 continue;
-            const double outside = outside_of_cube(xi);
+            const double outside = outside_of_cube(u);
             if (outside > beyond_ || outside > best.outside
                 || (outside == best.outside && candidate.domain > best.domain)
-                || (outside > seam && is_in_another(candidate.domain, xi)))
+                || is_in_another(candidate.domain, u, 0))
                 continue;
-            best = {candidate.domain, xi, outside};
+            best = {candidate.domain, u, outside, &candidate.map};
         }
         return best;
     }
@@ -149,29 +128,35 @@ class Search {
                && (b_.domain_centre(domain) - vertex.rest).squaredNorm() < least * least;
     }
 
-    /// Whether the rest point that the map of one domain gives lies in another.
-    bool is_in_another(int domain, const Vec3& xi) const {
+    /// Whether the rest point that the map of one domain gives lies in another, as far as u, known up to `error`, tells.
+    bool is_in_another(int domain, const Vec3p& u, double error) const {
+        if (!(outside_of_cube(u) > seam + error))
+            return false;
+        const Vec3p low = floor_of(u + (0.5 - error)), high = floor_of(u + (0.5 + error));
         std::array<int, 3> cell = b_.lattice->cell[domain];
-        for (int k = 0; k < 3; ++k)
-            cell[k] += static_cast<int>(std::floor(xi[k]));
+        for (int k = 0; k < 3; ++k) {
+            if (low[k] != high[k])
+                return false;
+            cell[k] += static_cast<int>(low[k]);
+        }
         const int there = b_.cells.find(cell);
         return there >= 0 && there != domain;
     }
 
-    Vec3 rest_point(int domain, const Vec3& xi) const {
-        return b_.domain_centre(domain) + b_.lattice->edge * (xi - Vec3::Constant(0.5));
+    Vec3 rest_point(int domain, const Vec3p& u) const {
+        return b_.domain_centre(domain) + b_.lattice->edge * unpadded(u);
     }
 
     /// The plane of the surface that a rest point has met: the nearest, or, of one that comes from outside, where its way
     /// from where it was at the start of the step goes in. Near an edge the nearest may be a side that it never passed.
     Plane met_plane(const ContactVertex& vertex, const Place& place, const Vec3& X) const {
         Plane plane = plane_at(X);
-        Vec3 xi = place.xi;
+        Vec3p u = place.u;
         if (plane.gap >= 0
-            || !invert_trilinear(
-                b_.domain_corners(place.domain, x_n_), vertex.position(x_n_), xi))
+            || !DomainMap(b_.domain_corners(place.domain, x_n_))
+                    .invert(vertex.padded_position(x_n_), u))
             return plane;
-        Vec3 outside = rest_point(place.domain, xi), inside = X;
+        Vec3 outside = rest_point(place.domain, u), inside = X;
         if (plane_at(outside).gap < 0)
             return plane;
         for (int k = 0; k < bisections; ++k) {
@@ -205,18 +190,19 @@ class Search {
     bool linearize_gap(const ContactVertex& vertex,
                        const Place& place,
                        ContactPoint& contact) const {
-        const Plane plane = met_plane(vertex, place, rest_point(place.domain, place.xi));
+        const Plane plane = met_plane(vertex, place, rest_point(place.domain, place.u));
         const double edge = b_.lattice->edge;
-        const Mat3 F = trilinear_gradient(place.xi, edge, b_.domain_corners(place.domain, x_));
-        if (!(F.determinant() > 0) || !(plane.normal.norm() > least_gradient))
+        const Gradient3 gradient = place.map->gradient(place.u);  // edge F
+        if (!(gradient.determinant > 0) || !(plane.normal.norm() > least_gradient))
             return false;
-        const Vec3 n = F.inverse().transpose() * plane.normal.normalized();
+        const Vec3 n =
+            edge * unpadded(gradient.solve_transposed(padded(plane.normal.normalized())));
         contact.vertex = &vertex;
         contact.gap = plane.gap / n.norm();
         contact.normal = n.normalized();
         if (&a_ == &b_ && contact.normal.dot(outward(vertex)) > 0)
             return false;
-        contact.weights = trilinear_weights(place.xi);
+        contact.weights = trilinear_weights(unpadded(place.u) + Vec3::Constant(0.5));
         contact.edge = edge;
         for (int a = 0; a < 8; ++a)
             contact.corners[a] = b_.begin + b_.lattice->corners[place.domain][a];

@@ -120,14 +120,7 @@ Vec3 ContactSurface::domain_centre(int p) const {
            + lattice->edge * (Vec3(cell[0], cell[1], cell[2]) + Vec3::Constant(0.5));
 }
 
-std::array<Vec3, 8> ContactSurface::domain_corners(int p, const Field& x) const {
-    std::array<Vec3, 8> corners;
-    for (int a = 0; a < 8; ++a)
-        corners[a] = unpadded(x[begin + lattice->corners[p][a]]);
-    return corners;
-}
-
-std::array<Vec3p, 8> ContactSurface::padded_corners(int p, const Field& x) const {
+std::array<Vec3p, 8> ContactSurface::domain_corners(int p, const Field& x) const {
     std::array<Vec3p, 8> corners;
     for (int a = 0; a < 8; ++a)
         corners[a] = x[begin + lattice->corners[p][a]];

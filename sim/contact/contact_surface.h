@@ -22,12 +22,14 @@ struct ContactVertex {
     double wave_speed = 0;            // sqrt(E / rho) there [m/s]
 
     /// Now, from the field of all corners.   [m]
-    Vec3 position(const Field& x) const {
+    Vec3p padded_position(const Field& x) const {
         Vec3p sum{};
         for (int a = 0; a < 8; ++a)
             sum += weights[a] * x[corners[a]];
-        return unpadded(sum);
+        return sum;
     }
+
+    Vec3 position(const Field& x) const { return unpadded(padded_position(x)); }
 };
 
 /// A box along the axes; empty before the first point.
@@ -66,8 +68,7 @@ struct ContactSurface {
     Vec3 domain_centre(int p) const;
 
     /// Now, from the field of all corners x.   (8) [m]
-    std::array<Vec3, 8> domain_corners(int p, const Field& x) const;
-    std::array<Vec3p, 8> padded_corners(int p, const Field& x) const;
+    std::array<Vec3p, 8> domain_corners(int p, const Field& x) const;
     Bounds bounds(const Field& x) const;
 
     std::vector<int> all_vertices() const;  // 0, 1, 2...

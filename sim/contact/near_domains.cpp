@@ -37,7 +37,7 @@ NearDomains near_domains(const ContactSurface& of_vertices,
     std::vector<Vec3> centres;
     double largest = 0;
     for (const int p : of_domains.shell) {
-        DomainBall ball(of_domains.padded_corners(p, x), beyond);
+        DomainBall ball(of_domains.domain_corners(p, x), beyond);
         ball.radius += ahead;
         if (!region.contains(unpadded(ball.centre), ball.radius))
             continue;

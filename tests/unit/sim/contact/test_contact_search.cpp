@@ -1,9 +1,16 @@
 #include "sim/contact/contact_search.h"
+#include "sim/embedding/trilinear.h"
 #include "tests/support/box_body.h"
+#include "tests/support/random_fields.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
 #include <set>
 
 using sim::Field;
@@ -90,4 +97,71 @@ TEST_CASE("vertices near a ball have their distance from it and the radial norma
         CHECK(contact.gap == Approx(rest.norm() - ball.radius).margin(0.01 * edge));
         CHECK((contact.normal - two.R * rest.normalized()).norm() < 0.05);
     }
+}
+
+namespace {
+
+double outside_of_cube(const Vec3& xi) {
+    return std::max(0.0, (xi - Vec3::Constant(0.5)).cwiseAbs().maxCoeff() - 0.5);
+}
+
+/// How far a point is outside of the nearest domain of a bent body, in its edges, by Newton's method in every one.
+double outside_by_brute_force(const sim::ContactSurface& body,
+                              const Field& x,
+                              const Vec3& point) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const int p : body.shell) {
+        std::array<Vec3, 8> corners;
+        std::ranges::transform(body.domain_corners(p, x), corners.begin(), sim::unpadded);
+        Vec3 xi = Vec3::Constant(0.5), miss = Vec3::Ones();
+        for (int k = 0; k < 30 && xi.cwiseAbs().maxCoeff() < 4; ++k) {
+            const auto w = sim::trilinear_weights(xi);
+            miss = point;
+            for (int a = 0; a < 8; ++a)
+                miss -= w[a] * corners[a];
+            xi += sim::trilinear_gradient(xi, 1, corners).inverse() * miss;
+        }
+        // A map is not continued into another domain.
+        std::array<int, 3> cell = body.lattice->cell[p];
+        for (int k = 0; k < 3; ++k)
+            cell[k] += static_cast<int>(std::floor(xi[k]));
+        const double outside = outside_of_cube(xi);
+        if (miss.norm() < 1e-12 && (outside < 1e-3 || body.cells.find(cell) < 0))
+            least = std::min(least, outside);
+    }
+    return least;
+}
+
+}  // namespace
+
+TEST_CASE("of bent bodies every vertex is found in the nearest domain that brute force finds") {
+    Two two(assets::Sphere{{2 * edge, 2 * edge, 5.2 * edge}, 2.4 * edge},
+            assets::Box{{0, 0, 0}, {5 * edge, 4 * edge, 3 * edge}});
+    tests::Random random(4);
+    const Field straight = two.x;
+    std::size_t n_found = 0;
+    for (const double much : {0.0, 0.05, 0.12, 0.18}) {
+        two.x = straight;
+        for (sim::Vec3p& at : two.x)
+            at += sim::padded(tests::random_vector(random, much * edge));
+        std::map<const sim::ContactVertex*, double> outside_of_found;
+        for (const sim::ContactPoint& contact : two.found()) {
+            outside_of_found[contact.vertex] =
+                outside_of_cube(sim::local_coordinates(contact.weights));
+            CHECK(contact.separation(two.x).norm() < 1e-9 * edge);
+        }
+        n_found += outside_of_found.size();
+        for (const sim::ContactVertex& vertex : two.vertices.vertices) {
+            const double outside =
+                outside_by_brute_force(two.domains, two.x, vertex.position(two.x));
+            const auto found = outside_of_found.find(&vertex);
+            CAPTURE(much, vertex.rest.transpose(), outside);
+            if (found != outside_of_found.end())
+                CHECK(found->second == Approx(outside).margin(1e-9));
+            // One beside a domain may still be further from the surface than the margin.
+            if (outside < 0.8 * margin / edge)
+                CHECK(found != outside_of_found.end());
+        }
+    }
+    CHECK(n_found > 100);
 }

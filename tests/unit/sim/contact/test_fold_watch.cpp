@@ -58,7 +58,7 @@ std::vector<int> strangers_by_brute_force(const sim::ContactSurface& surface, co
                 {a & 1 ? 1.25 : -0.25, a & 2 ? 1.25 : -0.25, a & 4 ? 1.25 : -0.25});
             continued[a].setZero();
             for (int b = 0; b < 8; ++b)
-                continued[a] += w[b] * corners[b];
+                continued[a] += w[b] * sim::unpadded(corners[b]);
         }
         hexahedra.push_back(continued);
     }

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -55,7 +56,8 @@ Pairs by_brute_force(const sim::ContactSurface& a,
                      const Field& x) {
     Pairs pairs;
     for (const int p : b.shell) {
-        const std::array<Vec3, 8> corners = b.domain_corners(p, x);
+        std::array<Vec3, 8> corners;
+        std::ranges::transform(b.domain_corners(p, x), corners.begin(), sim::unpadded);
         Vec3 centre = Vec3::Zero();
         for (const Vec3& corner : corners)
             centre += corner / 8;

@@ -1,0 +1,42 @@
+#include "sim/contact/domain_map.h"
+
+#include "sim/contact/padded_bounds.h"
+
+namespace sim {
+
+namespace {
+
+constexpr int most_iterations = 8;
+constexpr double enough = 1e-12;  // of a step in u
+constexpr double farthest = 3.5;  // u where the domain has been left for good
+
+Vec3p magnitude(const Vec3p& v) {
+    return larger(v, -v);
+}
+
+}  // namespace
+
+double DomainMap::bend(const Gradient3& at_centre, double most) const {
+    Vec3p sum{};
+    for (const int of_two : {3, 5, 6})
+        sum += magnitude(at_centre.solve(x_[of_two]));
+    sum += most * magnitude(at_centre.solve(x_[7]));
+    return most * most * largest_entry(sum);
+}
+
+bool DomainMap::invert(const Vec3p& point, Vec3p& u) const {
+    for (int iteration = 0; iteration < most_iterations; ++iteration) {
+        const Gradient3 slope = gradient(u);
+        if (!(slope.determinant > 0))
+            return false;
+        const Vec3p step = slope.solve(point - at(u));
+        u += step;
+        if (!(largest_entry(magnitude(u)) < farthest))
+            return false;
+        if (dot(step, step) < enough * enough)
+            break;
+    }
+    return true;
+}
+
+}  // namespace sim
