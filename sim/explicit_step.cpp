@@ -184,11 +184,12 @@ bool Stepper::is_clear_of_surfaces(const State& state, double dt) {
 bool Stepper::restrain_by_colliders(const Field& x, double length) {
     if (colliders_.empty())
         return false;
-    Field& change = end_gradient_;  // not known yet
-    change = moved_;
-    if (!colliders_.restrain(x, length, change))
+    Field& wanted = end_gradient_;  // not known yet
+    wanted = moved_;
+    const std::vector<int> restrained = colliders_.restrain(x, length, wanted);
+    if (restrained.empty())
         return false;
-    move_through_grid(change);
+    move_through_grid(restrained, wanted);
     return true;
 }
 

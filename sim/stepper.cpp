@@ -233,30 +233,31 @@ bool Stepper::exchange_contact(const State& state, double dt) {
         {state.x, assembly_.mass, assembly_.volume, assembly_.outside, prescribed_.is_free});
     if (contact.is_empty())
         return false;
+    corner_.resize(moved_.size());
     for (int pass = 0; pass < (map_.is_identity() ? 1 : passes_where_slaved); ++pass) {
-        Field& change = corner_;
-        change = moved_;
-        contact.exchange(dt, change);
-        move_through_grid(change);
+        Field& wanted = corner_;
+        for (const int c : contact.corners())
+            wanted[c] = moved_[c];
+        contact.exchange(dt, wanted);
+        move_through_grid(contact.corners(), wanted);
     }
     return true;
 }
 
-void Stepper::move_through_grid(Field& wanted) {
+void Stepper::move_through_grid(const std::vector<int>& corners, Field& wanted) {
     // A slaved corner can only move as its grid does. Were it given more, the next step would not know of it, ask for
-    // the same again, and pile up speed: so a change goes through the map, T M⁻¹ Tᵀ m, free corners as it is.
+    // the same again, and pile up speed: so a change goes through the map, T M⁻¹ Tᵀ m, free corners as it is. Only
+    // `corners` are given another velocity, mostly few.
     const Field& is_free = potential_.step().is_free;
-    Field dofs(map_.n_dofs());
-    for (std::size_t c = 0; c < moved_.size(); ++c)
+    q_change_.resize(map_.n_dofs());
+    for (const int c : corners)
         wanted[c] = assembly_.mass[c] * (wanted[c] - moved_[c]) * prescribed_.is_free[c];
-    map_.apply_transposed(wanted, dofs);
+    map_.apply_transposed_of(corners, wanted, q_change_);
     for (int i = 0; i < map_.n_dofs(); ++i) {
-        dofs[i] *= inverse_mass_[i] * is_free[i];
-        q_moved_[i] += dofs[i];
+        q_change_[i] *= inverse_mass_[i] * is_free[i];
+        q_moved_[i] += q_change_[i];
     }
-    map_.apply(dofs, wanted);
-    for (std::size_t c = 0; c < moved_.size(); ++c)
-        moved_[c] += wanted[c];
+    map_.add_applied(q_change_, moved_);
 }
 
 void Stepper::drift(const Field& x_n, double length) {

@@ -92,7 +92,7 @@ class Stepper {
     void expect_free_motion();
     void prescribe_dofs(const State& state, const Field& x_n, double drift, double dt);
     bool exchange_contact(const State& state, double dt);
-    void move_through_grid(Field& wanted);
+    void move_through_grid(const std::vector<int>& corners, Field& wanted);
     void drift(const Field& x_n, double length);
     void end_on_targets();
     void commit(State& state, double dt);
@@ -168,7 +168,8 @@ class Stepper {
     std::vector<double> dof_mass_;      // (#dofs) [kg]
     Field q_n_, q_;                     // (#dofs) [m/s]
     Field node_force_;                  // (#dofs) Tᵀ f; at nodes alone in explicit steps [N]
-    Field q_moved_;  // (#dofs) what moved_ comes from, but for a rigid shift [m/s]
+    Field q_moved_;   // (#dofs) what moved_ comes from, but for a rigid shift [m/s]
+    Field q_change_;  // (#dofs) what a contact adds to it [m/s]
 
     /// A degree of freedom with prescribed components, and their velocity [m/s].
     struct PrescribedDof {

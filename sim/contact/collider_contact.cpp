@@ -218,16 +218,18 @@ double ColliderContact::add_gradient(const Field& x, Field& gradient) const {
     return energy;
 }
 
-bool ColliderContact::restrain(const Field& x, double dt, Field& v) const {
-    bool any = false;
+std::vector<int> ColliderContact::restrain(const Field& x, double dt, Field& v) const {
+    std::vector<int> restrained;
     const auto end = [&](int c) { return x[c] + dt * v[c]; };  // as v is by then
     for_pairs(end, [&](int k, int j, const Pair&, double depth, const Vec3& normal) {
         if (!(depth > 0))
             return;
-        any = true;
-        Vec3p& velocity = v[corners_[k].corner];
+        const int c = corners_[k].corner;
+        if (restrained.empty() || restrained.back() != c)  // one corner comes after the other
+            restrained.push_back(c);
+        Vec3p& velocity = v[c];
         const double stopped = depth / dt;
-        const Vec3 at = unpadded(x[corners_[k].corner]);
+        const Vec3 at = unpadded(x[c]);
         const Vec3 surface = (poses_[j].carry(start_poses_[j].bring_back(at)) - at) / dt;
         const Vec3 slip = tangential(unpadded(velocity) - surface, normal);
         const Friction& friction = colliders_[j].friction();
@@ -235,7 +237,7 @@ bool ColliderContact::restrain(const Field& x, double dt, Field& v) const {
         const double share = std::min(1.0, most / std::max(slip.norm(), 1e-300));
         velocity += padded(stopped * normal - share * slip);
     });
-    return any;
+    return restrained;
 }
 
 void ColliderContact::linearize(const Field& x) {

@@ -61,8 +61,8 @@ class ColliderContact : public ContactEnergy {
 
     /// What colliders take from velocities v (#C) that would move corners from x in an explicit step of dt: the part that
     /// would end inside, and friction of up to mu times as much, each corner for itself. Inelastic, so that no energy
-    /// comes of it (Moreau's stepping). Returns whether there was anything to take.
-    bool restrain(const Field& x, double dt, Field& v) const;
+    /// comes of it (Moreau's stepping). Returns the corners that something was taken from, each once.
+    std::vector<int> restrain(const Field& x, double dt, Field& v) const;
 
     /// Of a corner in a collider.
     struct Penetration {

@@ -97,6 +97,14 @@ class GridContact::Pair {
 
     bool is_empty() const { return nodes_.empty(); }
 
+    /// Appends the corners that see a shared node.
+    void list_corners(std::vector<int>& corners) const {
+        for (const std::vector<Share>& shares : shares_)
+            for (const Share& share : shares)
+                if (corners.empty() || corners.back() != share.corner)
+                    corners.push_back(share.corner);
+    }
+
     void sweep(double dt, Field& velocity) {
         start_sweep();
         for (int s = 0; s < 2; ++s)
@@ -256,9 +264,13 @@ GridContact::GridContact(const std::vector<GridPair>& pairs, const ContactFields
         if (where.is_empty())
             continue;
         Pair made(pair, fields_, where);
-        if (!made.is_empty())
-            pairs_.push_back(std::move(made));
+        if (made.is_empty())
+            continue;
+        made.list_corners(corners_);
+        pairs_.push_back(std::move(made));
     }
+    std::sort(corners_.begin(), corners_.end());
+    corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
 }
 
 GridContact::~GridContact() = default;

@@ -55,6 +55,9 @@ class GridContact {
     /// Whether no two bodies are near each other.
     bool is_empty() const;
 
+    /// Those that an exchange may change: which see a node that two bodies share. Each once, ascending.
+    const std::vector<int>& corners() const { return corners_; }
+
     /// Changes `velocity` (#C), which would move the corners in a step of dt.   [m/s]
     void exchange(double dt, Field& velocity);
 
@@ -62,6 +65,7 @@ class GridContact {
     class Pair;
     ContactFields fields_;
     std::vector<Pair> pairs_;
+    std::vector<int> corners_;
 };
 
 }  // namespace sim

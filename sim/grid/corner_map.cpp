@@ -25,6 +25,15 @@ template <int n>
     return sum;
 }
 
+/// Whether any entry of n vectors is not zero.
+[[gnu::always_inline]] inline bool moves(const Vec3p* v, int n) {
+    using Bits = long long __attribute__((vector_size(sizeof(Vec3p))));
+    Bits any{};
+    for (int a = 0; a < n; ++a)
+        any |= __builtin_bit_cast(Bits, v[a]);
+    return (any[0] | any[1] | any[2] | any[3]) != 0;
+}
+
 /// Σ_a w_a v_a over the eight nodes of a linear stencil.
 [[gnu::always_inline]] inline Vec3p trilinear_sum(const std::array<double, 8>& w,
                                                   const Vec3p* v) {
@@ -135,11 +144,11 @@ void CornerMap::visit_corners(const Field& q, const Write& write) const {
         for (int k = begin; k < end; ++k)
             write(free_corner_[k], q[k]);
     });
-    visit_slaves(q, write);
+    visit_slaves<false>(q, write);
 }
 
-/// The same at slaves alone.
-template <class Write>
+/// The same at slaves alone; at all, or at those of stencils of which a node moves.
+template <bool passes_by_rest, class Write>
 void CornerMap::visit_slaves(const Field& q, const Write& write) const {
     for (const Part& part : parts_)
         visit_spline(part.kernel, [&]<class S>(S) {
@@ -152,6 +161,8 @@ void CornerMap::visit_slaves(const Field& q, const Write& write) const {
                         Vec3p v[per_group];
                         for (int a = 0; a < per_group; ++a)
                             v[a] = q[nodes[a]];
+                        if (passes_by_rest && !moves(v, per_group))
+                            continue;
                         for (int s = group.begin; s < group.end; ++s) {
                             if constexpr (n == 2) {
                                 write(slave_corner_[s],
@@ -196,7 +207,15 @@ void CornerMap::apply_and_move(
 }
 
 void CornerMap::apply_to_slaves(const Field& q, Field& u) const {
-    visit_slaves(q, [&](int c, const Vec3p& v) { u[c] = v; });
+    visit_slaves<false>(q, [&](int c, const Vec3p& v) { u[c] = v; });
+}
+
+void CornerMap::add_applied(const Field& q, Field& u) const {
+    for_chunks(n_free(), node_chunk, [&](int begin, int end) {
+        for (int k = begin; k < end; ++k)
+            u[free_corner_[k]] += q[k];
+    });
+    visit_slaves<true>(q, [&](int c, const Vec3p& v) { u[c] += v; });
 }
 
 void CornerMap::find_row(int corner, std::vector<Weight>& row) const {
@@ -254,16 +273,26 @@ void CornerMap::sum_groups(const Part& part, int per_group, const Sum& sum, Fiel
 }
 
 template <class S, bool squared>
-void CornerMap::gather(const Part& part, const Field& f, Field& q) const {
+void CornerMap::gather(const Part& part,
+                       const std::vector<char>* counts,
+                       const Field& f,
+                       Field& q) const {
     constexpr int n = S::n, per_group = n * n * n;
     const auto sum_chunk = [&](int begin, int end, Shares& shares) {
         thread_local std::vector<Weighted<S>> weighted;
         for (int k = begin; k < end; ++k) {
             const Group& group = groups_[part.first_group + k];
             const int* nodes = &group_nodes_[part.first_entry + k * per_group];
+            if (counts != nullptr
+                && std::none_of(counts->begin() + group.begin,
+                                counts->begin() + group.end,
+                                [](char slave_counts) { return slave_counts; }))
+                continue;
             if constexpr (n == 2) {
                 Vec3p sum[8] = {};
                 for (int s = group.begin; s < group.end; ++s) {
+                    if (counts != nullptr && !(*counts)[s])
+                        continue;
                     const auto& w8 = trilinear_weights_[part.first_trilinear + s];
                     const Vec3p value = f[slave_corner_[s]];
 #pragma GCC unroll 8
@@ -276,7 +305,8 @@ void CornerMap::gather(const Part& part, const Field& f, Field& q) const {
             }
             weighted.clear();
             for (int s = group.begin; s < group.end; ++s)
-                weighted.emplace_back(slave_local_[s], f[slave_corner_[s]], squared);
+                if (counts == nullptr || (*counts)[s])
+                    weighted.emplace_back(slave_local_[s], f[slave_corner_[s]], squared);
             for (int c = 0; c < n; ++c, nodes += n * n) {
                 Vec3p sum[n * n] = {};
                 for (const Weighted<S>& slave : weighted)
@@ -290,10 +320,10 @@ void CornerMap::gather(const Part& part, const Field& f, Field& q) const {
 }
 
 template <bool squared>
-void CornerMap::gather_nodes(const Field& f, Field& q) const {
+void CornerMap::gather_nodes(const std::vector<char>* counts, const Field& f, Field& q) const {
     std::fill(q.begin() + n_free(), q.begin() + n_dofs(), Vec3p{});
     for (const Part& part : parts_)
-        visit_spline(part.kernel, [&]<class S>(S) { gather<S, squared>(part, f, q); });
+        visit_spline(part.kernel, [&]<class S>(S) { gather<S, squared>(part, counts, f, q); });
 }
 
 template <bool squared>
@@ -302,11 +332,27 @@ void CornerMap::gather_all(const Field& f, Field& q) const {
         for (int k = begin; k < end; ++k)
             q[k] = f[free_corner_[k]];
     });
-    gather_nodes<squared>(f, q);
+    gather_nodes<squared>(nullptr, f, q);
 }
 
 void CornerMap::gather_at_nodes(const Field& f, Field& q) const {
-    gather_nodes<false>(f, q);
+    gather_nodes<false>(nullptr, f, q);
+}
+
+void CornerMap::apply_transposed_of(const std::vector<int>& corners,
+                                    const Field& f,
+                                    Field& q) const {
+    std::fill(q.begin(), q.begin() + n_free(), Vec3p{});
+    counts_.resize(slave_corner_.size(), 0);
+    for (const int c : corners)
+        if (const int k = dof_of_corner_[c]; k >= 0)
+            q[k] = f[c];
+        else
+            counts_[slave_of_corner_[c]] = 1;
+    gather_nodes<false>(&counts_, f, q);
+    for (const int c : corners)
+        if (dof_of_corner_[c] < 0)
+            counts_[slave_of_corner_[c]] = 0;
 }
 
 void CornerMap::apply_transposed(const Field& f, Field& q) const {

@@ -72,6 +72,12 @@ class CornerMap {
     /// q = Tᵀ f.   f (#C), q (#dofs)
     void apply_transposed(const Field& f, Field& q) const;
 
+    /// u += T q where little of q is not zero: stencils without such a node are passed by.   q (#dofs), u (#C)
+    void add_applied(const Field& q, Field& u) const;
+
+    /// q = Tᵀ f where f counts at `corners` alone, and stencils without one are passed by.   f (#C), q (#dofs)
+    void apply_transposed_of(const std::vector<int>& corners, const Field& f, Field& q) const;
+
     /// q = Tᵀ f at nodes alone, where only slaves count.   f (#C), q (#dofs)
     void gather_at_nodes(const Field& f, Field& q) const;
 
@@ -156,16 +162,19 @@ class CornerMap {
     void keep_trilinear_weights(Part& part);
 
     // corner_map.cpp
-    template <class Write>
+    template <bool passes_by_rest, class Write>
     void visit_slaves(const Field& q, const Write& write) const;
     template <class Write>
     void visit_corners(const Field& q, const Write& write) const;
     template <class S, bool squared>
-    void gather(const Part& part, const Field& f, Field& q) const;
+    void gather(const Part& part,
+                const std::vector<char>* counts,
+                const Field& f,
+                Field& q) const;
     template <bool squared>
     void gather_all(const Field& f, Field& q) const;
     template <bool squared>
-    void gather_nodes(const Field& f, Field& q) const;
+    void gather_nodes(const std::vector<char>* counts, const Field& f, Field& q) const;
     template <class S>
     void pass(
         const Part& part, Factor factor, const Field* q, const AtSlaves& f, Field* sums) const;
@@ -182,7 +191,9 @@ class CornerMap {
     std::vector<int> slave_of_corner_;                      // (#C) where it is no free one
     Field slave_local_;                                     // (#slaves) t of Spline
     std::vector<std::array<double, 8>> trilinear_weights_;  // of slaves with linear kernels
-    mutable std::vector<Shares> shares_;                    // scratch of the gathers
+    // Scratch of the gathers.
+    mutable std::vector<Shares> shares_;
+    mutable std::vector<char> counts_;  // (#slaves) of those of few corners; zero between uses
 
     // Scratch of rebuild(), kept to avoid allocations in every step.
     std::vector<int> slave_order_, cell_of_slave_, base_, placed_;
