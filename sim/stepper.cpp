@@ -238,7 +238,8 @@ bool Stepper::exchange_contact(const State& state, double dt) {
         Field& wanted = corner_;
         for (const int c : contact.corners())
             wanted[c] = moved_[c];
-        contact.exchange(dt, wanted);
+        if (!contact.exchange(dt, wanted))
+            break;
         move_through_grid(contact.corners(), wanted);
     }
     return true;

@@ -1,5 +1,6 @@
 #include "sim/contact/grid_contact.h"
 
+#include "sim/base/floor.h"
 #include "sim/contact/node_box.h"
 #include "sim/contact/padded_bounds.h"
 #include "sim/grid/kernel.h"
@@ -30,16 +31,17 @@ struct Share {
 /// One body's share of a node.
 struct Side {
     double mass = 0;
-    double volume = 0;       // [m³]
-    Vec3 gradient{0, 0, 0};  // of the volume [m²]
-    Vec3 momentum{0, 0, 0};
-    std::array<double, n_normals> reach{};  // largest distance along each normal, outward
+    double volume = 0;  // [m³]
+    Vec3p gradient{};   // of the volume [m²]
+    Vec3p momentum{};
+    Vec3p reach{};  // largest distance along each normal, outward
 };
 
 struct Node {
     std::array<Side, 2> side;
     std::array<Vec3, n_normals> normals;  // from the first body to the second
-    std::array<Vec3, 2> dv{Vec3::Zero(), Vec3::Zero()};
+    std::array<Vec3p, 3> along;           // entry n of along[k]: component k of normal n
+    std::array<Vec3p, 2> dv{};
 };
 
 PaddedBounds bounds_of(const ContactBody& body, const Field& x) {
@@ -57,14 +59,9 @@ PaddedBounds common(const PaddedBounds& a, const PaddedBounds& b, double cell_si
 
 /// The lowest node of a stencil, and the distance from it in cells.
 std::pair<std::array<long, 3>, Vec3p> place(const Vec3p& x, double h, double shift) {
-    std::array<long, 3> base{};
-    Vec3p t{};
-    for (int k = 0; k < 3; ++k) {
-        const double scaled = x[k] / h, low = std::floor(scaled - shift);
-        base[k] = static_cast<long>(low);
-        t[k] = scaled - low;
-    }
-    return {base, t};
+    const Vec3p scaled = x / h, low = floor_of(scaled - shift);
+    return {{static_cast<long>(low[0]), static_cast<long>(low[1]), static_cast<long>(low[2])},
+            scaled - low};
 }
 
 }  // namespace
@@ -105,24 +102,29 @@ class GridContact::Pair {
                     corners.push_back(share.corner);
     }
 
-    void sweep(double dt, Field& velocity) {
+    /// Returns whether the bodies have met anywhere; if not, nothing has changed.
+    bool sweep(double dt, Field& velocity) {
         start_sweep();
-        for (int s = 0; s < 2; ++s)
+        for (int s = 0; s < 2; ++s) {
+            const double outward = s == 0 ? 1 : -1;
             for (const auto& [c, n, weight] : shares_[s]) {
                 Node& node = nodes_[n];
                 Side& side = node.side[s];
-                side.momentum += weight * fields_.mass[c][0] * unpadded(velocity[c]);
-                const Vec3 x = unpadded(fields_.x[c] + dt * velocity[c]);
-                for (int k = 0; k < n_normals; ++k)
-                    side.reach[k] = std::max(
-                        side.reach[k],
-                        (s == 0 ? 1 : -1) * node.normals[k].dot(x) - fields_.outside[c]);
+                side.momentum += weight * fields_.mass[c][0] * velocity[c];
+                const Vec3p x = fields_.x[c] + dt * velocity[c];
+                const Vec3p along =
+                    node.along[0] * x[0] + node.along[1] * x[1] + node.along[2] * x[2];
+                side.reach = larger(side.reach, outward * along - fields_.outside[c]);
             }
+        }
+        bool have_met = false;
         for (Node& node : nodes_)
-            exchange(node, friction_);
-        for (int s = 0; s < 2; ++s)
-            for (const auto& [c, n, weight] : shares_[s])
-                velocity[c] += padded(weight * nodes_[n].dv[s]) * fields_.is_free[c];
+            have_met |= exchange(node, friction_);
+        if (have_met)
+            for (int s = 0; s < 2; ++s)
+                for (const auto& [c, n, weight] : shares_[s])
+                    velocity[c] += weight * nodes_[n].dv[s] * fields_.is_free[c];
+        return have_met;
     }
 
   private:
@@ -183,9 +185,10 @@ class GridContact::Pair {
                     Side& side = nodes_[n].side[s];
                     side.volume += volume * w[i][0] * w[j][1] * w[k][2];
                     side.gradient += scale
-                                     * Vec3(slope[i][0] * w[j][1] * w[k][2],
-                                            w[i][0] * slope[j][1] * w[k][2],
-                                            w[i][0] * w[j][1] * slope[k][2]);
+                                     * Vec3p{slope[i][0] * w[j][1] * w[k][2],
+                                             w[i][0] * slope[j][1] * w[k][2],
+                                             w[i][0] * w[j][1] * slope[k][2],
+                                             0};
                 }
     }
 
@@ -193,10 +196,15 @@ class GridContact::Pair {
     /// its side. Where rims of both meet their mean does not; where only one ends, the other knows the face that they share.
     static void find_normals(Node& node) {
         const auto& [a, b] = node.side;
-        const Vec3 out_of_first = a.gradient / a.volume, into_second = -b.gradient / b.volume;
+        const Vec3 out_of_first = unpadded(a.gradient) / a.volume,
+                   into_second = -unpadded(b.gradient) / b.volume;
         node.normals = {out_of_first + into_second, out_of_first, into_second};
-        for (Vec3& n : node.normals)
-            n = n.norm() > 0 ? n.normalized() : Vec3::Zero();
+        for (int n = 0; n < n_normals; ++n) {
+            Vec3& normal = node.normals[n];
+            normal = normal.norm() > 0 ? normal.normalized() : Vec3::Zero();
+            for (int k = 0; k < 3; ++k)
+                node.along[k][n] = normal[k];
+        }
     }
 
     /// The mean normal, or that of one body along which they overlap by much less than by the turn from one to the other
@@ -223,20 +231,21 @@ class GridContact::Pair {
     void start_sweep() {
         for (Node& node : nodes_) {
             for (Side& side : node.side) {
-                side.momentum = Vec3::Zero();
-                side.reach.fill(-infinity);
+                side.momentum = Vec3p{};
+                side.reach = Vec3p{} - infinity;
             }
-            node.dv.fill(Vec3::Zero());
+            node.dv.fill(Vec3p{});
         }
     }
 
-    static void exchange(Node& node, const Friction& friction) {
+    /// Returns whether they meet there.
+    static bool exchange(Node& node, const Friction& friction) {
         const auto& [a, b] = node.side;
         const Vec3 normal = least_overlap(node);
-        const Vec3 relative = a.momentum / a.mass - b.momentum / b.mass;
+        const Vec3 relative = unpadded(a.momentum / a.mass - b.momentum / b.mass);
         const double approach = relative.dot(normal);
         if (approach <= 0)
-            return;
+            return false;
         Vec3 change = approach * normal;
         const Vec3 slip = relative - change;
         const double speed = slip.norm();
@@ -245,8 +254,9 @@ class GridContact::Pair {
                 (friction.stick ? 1.0 : std::min(1.0, friction.coefficient * approach / speed))
                 * slip;
         const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
-        node.dv[0] = -reduced_mass / a.mass * change;
-        node.dv[1] = reduced_mass / b.mass * change;
+        node.dv[0] = padded(-reduced_mass / a.mass * change);
+        node.dv[1] = padded(reduced_mass / b.mass * change);
+        return true;
     }
 
     const ContactFields& fields_;
@@ -279,10 +289,12 @@ bool GridContact::is_empty() const {
     return pairs_.empty();
 }
 
-void GridContact::exchange(double dt, Field& velocity) {
+bool GridContact::exchange(double dt, Field& velocity) {
+    bool have_met = false;
     for (Pair& pair : pairs_)
-        for (int k = 0; k < contact_sweeps; ++k)
-            pair.sweep(dt, velocity);
+        for (int k = 0; k < contact_sweeps && pair.sweep(dt, velocity); ++k)
+            have_met = true;
+    return have_met;
 }
 
 }  // namespace sim

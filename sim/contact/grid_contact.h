@@ -58,8 +58,9 @@ class GridContact {
     /// Those that an exchange may change: which see a node that two bodies share. Each once, ascending.
     const std::vector<int>& corners() const { return corners_; }
 
-    /// Changes `velocity` (#C), which would move the corners in a step of dt.   [m/s]
-    void exchange(double dt, Field& velocity);
+    /// Changes `velocity` (#C), which would move the corners in a step of dt [m/s]; returns whether there was anything to
+    /// change.
+    bool exchange(double dt, Field& velocity);
 
   private:
     class Pair;
