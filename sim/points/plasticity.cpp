@@ -18,8 +18,32 @@ namespace {
 constexpr double least_stretch = 0.1;  // that is far enough from zero to divide by
 constexpr double most_defect = 1e-28;  // squared cosine of an angle between singular vectors
 
-[[gnu::always_inline]] inline Lanes smaller(const Lanes& a, const Lanes& b) {
-    return select_positive(Lanes(b - a), a, b);
+template <class S>
+[[gnu::always_inline]] inline S smaller(const S& a, const S& b) {
+    return select_positive(S(b - a), a, b);
+}
+
+/// Positive where the symmetric A has positive eigenvalues alone: the first pivot of its LDLᵀ that is not positive, else
+/// the last. Elimination without exchanges is stable there: it is wrong by no more than the rounding of A.
+template <class S>
+[[gnu::always_inline]] inline S positive_definite(const Matrix3<S>& A) {
+    const S first = A.m[0], x = A.m[1] / first, y = A.m[2] / first;
+    const S second = A.m[4] - x * A.m[1], yz = A.m[5] - x * A.m[2];
+    const S third = A.m[8] - y * A.m[2] - yz * yz / second;
+    return select_positive(first, select_positive(second, third, second), first);
+}
+
+/// Positive where no stretch of F is outside of [low, high] and F keeps its side: low² 1 < FᵀF < high² 1.
+template <class S>
+[[gnu::always_inline]] inline S inside(const Matrix3<S>& F, const S& low, const S& high) {
+    Matrix3<S> above = gram(F), below;
+    for (int k = 0; k < 9; ++k)
+        below.m[k] = -above.m[k];
+    for (int k = 0; k < 9; k += 4) {
+        above.m[k] -= low * low;
+        below.m[k] += high * high;
+    }
+    return smaller(smaller(positive_definite(above), positive_definite(below)), determinant(F));
 }
 
 /// Points that yield side by side, and what their stretches are brought into.
@@ -27,17 +51,6 @@ struct YieldingBatch {
     Matrix3<Lanes> F;
     alignas(64) Lanes low{}, high{};
 };
-
-/// Positive where |FᵀF - 1| leaves no stretch outside of the limits.
-[[gnu::always_inline]] inline Lanes surely_inside(const YieldingBatch& batch) {
-    Matrix3<Lanes> E = gram(batch.F);
-    for (int k = 0; k < 9; k += 4)
-        E.m[k] -= 1;
-    const Lanes most = sqrt_of(inner(E, E));
-    const Lanes above = 1 - most - batch.low * batch.low;
-    const Lanes below = batch.high * batch.high - 1 - most;
-    return smaller(smaller(above, below), determinant(batch.F));
-}
 
 /// F with its stretches inside, the volume that it has lost, and whether that can be trusted: where it is positive.
 struct Yielded {
@@ -63,20 +76,11 @@ struct Yielded {
     return result;
 }
 
-/// Whether |FᵀF - 1| leaves no stretch outside [low, high].
-bool is_surely_inside(const Matrix3<double>& F, double low, double high) {
-    Matrix3<double> E = gram(F);
-    for (int k = 0; k < 9; k += 4)
-        E.m[k] -= 1;
-    const double most = std::sqrt(inner(E, E));
-    return 1 - most >= low * low && 1 + most <= high * high && determinant(F) > 0;
-}
-
 }  // namespace
 
 void yield(const SnowOptions& snow, Matrix3<double>& F, double& J_plastic) {
     const double low = 1 - snow.compression_limit, high = 1 + snow.stretch_limit;
-    if (is_surely_inside(F, low, high))
+    if (inside(F, low, high) > 0)
         return;
     Eigen::Map<Mat3> f(F.m);
     const auto [U, sigma, V] = signed_svd(f);
@@ -100,10 +104,10 @@ void yield(const MaterialPoints& points, int begin, int end, PointState& state) 
             batch.high[l] = 1 + snow.stretch_limit;
         }
         batch.F = load_lanes(F);
-        const Lanes inside = surely_inside(batch);
+        const Lanes stays = inside(batch.F, batch.low, batch.high);
         bool all_inside = true;
         for (int l = 0; l < lane_count; ++l)
-            all_inside = all_inside && (F[l] == &rest || inside[l] > 0);
+            all_inside = all_inside && (F[l] == &rest || stays[l] > 0);
         if (all_inside)
             continue;
         const Yielded end_state = yielded(batch);
@@ -113,7 +117,7 @@ void yield(const MaterialPoints& points, int begin, int end, PointState& state) 
         store_lanes(end_state.F, to);
         for (int l = 0; l < lane_count; ++l) {
             const int p = first + l;
-            if (F[l] == &rest || inside[l] > 0)
+            if (F[l] == &rest || stays[l] > 0)
                 continue;
             if (end_state.trust[l] > 0) {
                 state.F[p] = F_end[l];
