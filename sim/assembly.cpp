@@ -119,6 +119,7 @@ void Assembly::add_points(const Body& body,
 
 void Assembly::add_force(const Scene& scene, const DeadLoad& load) {
     const int b = index_of(scene.bodies, load.body);
+    bodies[b].has_dead_load = true;
     const Lattice& lattice = bodies[b].lattice;
     const std::vector<int> corners = select_corners(lattice, scene.bodies[b], load.select);
     if (bodies[b].points) {

@@ -217,27 +217,31 @@ double Stepper::second_kick(const Field& gradient_before) {
     // Of free corners at once, by what slaved ones give their nodes later: each place is filled, to spare branches that no
     // processor guesses, and only that of its kind is read. On the way the frequency of the motion:
     // w² = |M⁻¹ dg|²_M / dx·dg, with dg the change of the forces over dx: of the modes in dx the fastest weigh most.
-    const int n = static_cast<int>(moved_.size());
     const double damped = 1 / (1 + scene_.solver.damping * dt_hat_), length = 2 * dt_hat_;
-    v_end_.resize(n);
-    corner_.resize(n);
-    const Vec3p sums = sum_chunks(n, chunk, [&](int begin, int end) {
-        Vec3p force{}, strain{}, motion{};
-        for (int c = begin; c < end; ++c) {
-            const Vec3p& is_free = prescribed_.is_free[c];
-            const double inverse_mass = assembly_.inverse_mass[c];
-            const Vec3p dx = length * moved_[c];
-            const Vec3p dg = (end_gradient_[c] - gradient_before[c]) * is_free;
-            force += inverse_mass * dg * dg;
-            strain += dx * dg;
-            motion += assembly_.mass[c] * dx * dx;
-            const Vec3p kick = dt_hat_ * (assembly_.force[c] - end_gradient_[c]);
-            corner_[c] = kick;
-            const Vec3p v = damped * (moved_[c] + inverse_mass * kick);
-            v_end_[c] = moved_[c] + is_free * (v - moved_[c]);
-        }
-        return Vec3p{sum_of(force), sum_of(strain), sum_of(motion), 0};
-    });
+    v_end_.resize(moved_.size());
+    corner_.resize(moved_.size());
+    Vec3p sums{};
+    for (const AssembledBody& body : assembly_.bodies) {
+        if (body.points)
+            continue;  // kick_nodes(), seen_frequency_of_points()
+        sums += sum_chunks(body.end - body.begin, chunk, [&](int begin, int end) {
+            Vec3p force{}, strain{}, motion{};
+            for (int c = body.begin + begin; c < body.begin + end; ++c) {
+                const Vec3p& is_free = prescribed_.is_free[c];
+                const double inverse_mass = assembly_.inverse_mass[c];
+                const Vec3p dx = length * moved_[c];
+                const Vec3p dg = (end_gradient_[c] - gradient_before[c]) * is_free;
+                force += inverse_mass * dg * dg;
+                strain += dx * dg;
+                motion += assembly_.mass[c] * dx * dx;
+                corner_[c] = assembly_.force[c] - end_gradient_[c];
+                const Vec3p kick = dt_hat_ * corner_[c];
+                const Vec3p v = damped * (moved_[c] + inverse_mass * kick);
+                v_end_[c] = moved_[c] + is_free * (v - moved_[c]);
+            }
+            return Vec3p{sum_of(force), sum_of(strain), sum_of(motion), 0};
+        });
+    }
     const double force = sums[0], strain = sums[1], motion = sums[2];
     return strain * dt_hat_ * dt_hat_ > noise * motion ? std::sqrt(force / strain) : 0;
 }
@@ -248,12 +252,13 @@ void Stepper::kick_nodes(const State& state, double dt) {
     const auto& step = potential_.step();
     const double damped = 1 / (1 + scene_.solver.damping * dt_hat_),
                  keep = std::pow(damped, 2 * n_drifts_) * share_kept(dt);
-    node_force_.resize(n);
-    map_.gather_at_nodes(corner_, node_force_);
+    for (std::size_t b = 0; b < points_.size(); ++b)
+        if (!points_[b])  // on points the same acts as at the start of the step
+            map_.gather_at_nodes(static_cast<int>(b), corner_, node_force_);
     for (int i = map_.n_free(); i < n; ++i) {
         const Vec3p inner = has_points_ ? grid_gradient_[i] : Vec3p{};
         const Vec3p v =
-            damped * (q_moved_[i] + inverse_mass_[i] * (node_force_[i] - dt_hat_ * inner));
+            damped * (q_moved_[i] + (dt_hat_ * inverse_mass_[i]) * (node_force_[i] - inner));
         q_moved_[i] += step.is_free[i] * (v - q_moved_[i]);
         q_n_[i] = q_moved_[i] - keep * q_n_[i];
     }

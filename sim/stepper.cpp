@@ -145,18 +145,14 @@ void Stepper::transfer_to_nodes(const State& state, const Field& v, const Field*
                 const Vec3p& m = assembly_.mass[c];
                 const Vec3p split = is_affine ? Vec3p{} : rigid[b].at(state.x[c]);
                 corner_[c] = m * (v[c] - split) + Vec3p{0, 0, 0, m[0]};  // mass in the fourth
-                acting_[c] = assembly_.force[c];
-                if (inner != nullptr)
-                    acting_[c] -= (*inner)[c];
             }
         });
     }
     q_n_.resize(n);
-    node_force_.resize(n);
-    map_.gather_at_nodes(corner_, q_n_);
+    for (std::size_t b = 0; b < ranges_.size(); ++b)
+        map_.gather_at_nodes(static_cast<int>(b), corner_, q_n_);
     if (is_affine)
         add_affine_momentum(state);
-    map_.gather_at_nodes(acting_, node_force_);
 
     // A node that corners only touch with weight zero has no mass. It moves with the body at first: points on a node see
     // the slope of linear kernels all the same, so implicit steps put it where the stress asks for.
@@ -175,6 +171,32 @@ void Stepper::transfer_to_nodes(const State& state, const Field& v, const Field*
         dof_mass_[k] = assembly_.mass[c][0];
         inverse_mass_[k] = assembly_.inverse_mass[c];
     }
+    transfer_forces(inner);
+}
+
+void Stepper::transfer_forces(const Field* inner) {
+    // What acts on slaves, to nodes. Forces of insides act on corners alone: those of points go to nodes by themselves.
+    acting_.resize(assembly_.force.size());
+    node_force_.resize(map_.n_dofs());
+    std::vector<char> has_weight_alone(ranges_.size());
+    for (std::size_t b = 0; b < ranges_.size(); ++b) {
+        const AssembledBody& body = assembly_.bodies[b];
+        has_weight_alone[b] = body.points && !body.has_dead_load;
+        if (has_weight_alone[b])
+            continue;
+        const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
+        for (int s = slaves.begin; s < slaves.end; ++s) {
+            const int c = map_.slave_corner()[s];
+            acting_[c] = assembly_.force[c];
+            if (inner != nullptr && !body.points)
+                acting_[c] -= (*inner)[c];
+        }
+        map_.gather_at_nodes(static_cast<int>(b), acting_, node_force_);
+    }
+    const Vec3p gravity = padded(assembly_.gravity);
+    for (int i = map_.n_free(); i < map_.n_dofs(); ++i)
+        if (has_weight_alone[map_.dof_body()[i]])
+            node_force_[i] = dof_mass_[i] * gravity;
 }
 
 void Stepper::expect_free_motion() {

@@ -89,6 +89,7 @@ class Stepper {
 
     Motion motion_before(const State& state, double dt, int c) const;
     void transfer_to_nodes(const State& state, const Field& v, const Field* inner);
+    void transfer_forces(const Field* inner);
     void expect_free_motion();
     void prescribe_dofs(const State& state, const Field& x_n, double drift, double dt);
     bool exchange_contact(const State& state, double dt);

@@ -320,10 +320,13 @@ void CornerMap::gather(const Part& part,
 }
 
 template <bool squared>
-void CornerMap::gather_nodes(const std::vector<char>* counts, const Field& f, Field& q) const {
-    std::fill(q.begin() + n_free(), q.begin() + n_dofs(), Vec3p{});
-    for (const Part& part : parts_)
-        visit_spline(part.kernel, [&]<class S>(S) { gather<S, squared>(part, counts, f, q); });
+void CornerMap::gather_nodes(const Part& part,
+                             const std::vector<char>* counts,
+                             const Field& f,
+                             Field& q) const {
+    const auto nodes = q.begin() + n_free();
+    std::fill(nodes + part.first_node, nodes + part.last_node, Vec3p{});
+    visit_spline(part.kernel, [&]<class S>(S) { gather<S, squared>(part, counts, f, q); });
 }
 
 template <bool squared>
@@ -332,11 +335,12 @@ void CornerMap::gather_all(const Field& f, Field& q) const {
         for (int k = begin; k < end; ++k)
             q[k] = f[free_corner_[k]];
     });
-    gather_nodes<squared>(nullptr, f, q);
+    for (const Part& part : parts_)
+        gather_nodes<squared>(part, nullptr, f, q);
 }
 
-void CornerMap::gather_at_nodes(const Field& f, Field& q) const {
-    gather_nodes<false>(nullptr, f, q);
+void CornerMap::gather_at_nodes(int body, const Field& f, Field& q) const {
+    gather_nodes<false>(parts_[body], nullptr, f, q);
 }
 
 void CornerMap::apply_transposed_of(const std::vector<int>& corners,
@@ -349,7 +353,8 @@ void CornerMap::apply_transposed_of(const std::vector<int>& corners,
             q[k] = f[c];
         else
             counts_[slave_of_corner_[c]] = 1;
-    gather_nodes<false>(&counts_, f, q);
+    for (const Part& part : parts_)
+        gather_nodes<false>(part, &counts_, f, q);
     for (const int c : corners)
         if (dof_of_corner_[c] < 0)
             counts_[slave_of_corner_[c]] = 0;

@@ -78,8 +78,8 @@ class CornerMap {
     /// q = Tᵀ f where f counts at `corners` alone, and stencils without one are passed by.   f (#C), q (#dofs)
     void apply_transposed_of(const std::vector<int>& corners, const Field& f, Field& q) const;
 
-    /// q = Tᵀ f at nodes alone, where only slaves count.   f (#C), q (#dofs)
-    void gather_at_nodes(const Field& f, Field& q) const;
+    /// q = Tᵀ f at the nodes of one body alone, where only slaves count.   f (#C), q (#dofs)
+    void gather_at_nodes(int body, const Field& f, Field& q) const;
 
     /// T q and Tᵀ f, in `buffer` or, where T is the identity, without a copy.
     const Field& applied(const Field& q, Field& buffer) const;
@@ -174,7 +174,10 @@ class CornerMap {
     template <bool squared>
     void gather_all(const Field& f, Field& q) const;
     template <bool squared>
-    void gather_nodes(const std::vector<char>* counts, const Field& f, Field& q) const;
+    void gather_nodes(const Part& part,
+                      const std::vector<char>* counts,
+                      const Field& f,
+                      Field& q) const;
     template <class S>
     void pass(
         const Part& part, Factor factor, const Field* q, const AtSlaves& f, Field* sums) const;

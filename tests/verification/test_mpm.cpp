@@ -57,6 +57,33 @@ TEST_CASE("points in free flight keep momentum and stay without stress") {
     CHECK(std::abs(after.smallest_J - 1) <= 1e-9);
 }
 
+TEST_CASE("weight and loads give a body of points the momentum of their impulse") {
+    // A body that only has weight, and one that is also pulled at one end.
+    const Steps steps = GENERATE(Steps::Explicit, Steps::Implicit);
+    const bool is_pulled = GENERATE(false, true);
+    CAPTURE(int(steps), is_pulled);
+    sim::Body body = tests::box_body({4, 3, 5}, 0.05, {0.013, 0.02, -1.03});
+    body.velocity = {3, -2, 1};
+    sim::Scene scene = points_scene(body, Kernel::Quadratic, Transfer::Flip, steps);
+    const Vec3 g(0.3, 0.2, -9.81), pull(20, 0, 7);
+    scene.forces.push_back(sim::Gravity{g});
+    if (is_pulled) {
+        sim::DeadLoad load;
+        load.body = body.name;
+        load.select = tests::behind({0.1, 0, 0}, {1, 0, 0});
+        load.total = pull;
+        scene.forces.push_back(load);
+    }
+    sim::Simulation simulation(scene, 1.0 / 24);
+    const sim::Stats before = simulation.stats();
+    const double time = 0.1;
+    simulation.advance_to(time);
+    const Vec3 force = before.total_mass * g + (is_pulled ? pull : Vec3(0, 0, 0));
+    const Vec3 expected = before.linear_momentum + time * force;
+    const double rounding = steps == Steps::Explicit ? 1e-12 : 1e-9;  // implicit ones iterate
+    CHECK((simulation.stats().linear_momentum - expected).norm() <= rounding * expected.norm());
+}
+
 namespace {
 
 /// D4 of the reference problems: a free disc, ten cells across, a revolution a second.
