@@ -340,7 +340,7 @@ void Stepper::refresh(const State& state) {
     q_moved_ = q_ = q_n_;
     Field gradient;
     potential_.value_and_gradient(q_, gradient);
-    gradient_ = potential_.corner_gradient();
+    potential_.elastic_gradient(state.x, gradient_);  // explicit contact is no energy
     Field inner(map_.n_dofs()), force(map_.n_dofs());
     add_start_gradient(inner);
     map_.apply_transposed(assembly_.force, force);

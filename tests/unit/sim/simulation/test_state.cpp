@@ -1,9 +1,12 @@
 #include "assets/base/error.h"
 #include "sim/simulation.h"
 #include "tests/support/bar_scene.h"
+#include "tests/support/soft_block.h"
 
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
+
+#include <algorithm>
 
 namespace {
 
@@ -60,6 +63,30 @@ TEST_CASE("a restored checkpoint of points goes on to the same bits") {
                moved = !(whole.checkpoint() == first.checkpoint());
     CHECK(goes_on);
     CHECK(moved);
+}
+
+TEST_CASE("a restored checkpoint of a body in a collider goes on to the same bits") {
+    sim::Scene scene;
+    scene.solver.steps = GENERATE(sim::Steps::Implicit, sim::Steps::Explicit);
+    scene.solver.method = GENERATE(sim::Method::Fem, sim::Method::Domains);
+    scene.solver.dt = 2e-3;
+    scene.bodies = {tests::soft_block("cube", {0, 0, 0.02}, Vec3::Constant(0.3), 0.05, 1e5)};
+    scene.forces.push_back(sim::Gravity{{0, 0, -10}});
+    sim::Collider ground;
+    ground.shape = sim::PlaneShape{{0, 0, 0}, {0, 0, 1}};
+    scene.colliders.push_back(ground);
+    sim::Simulation whole(scene, frame_time), resumed(scene, frame_time);
+    double deepest = 0;
+    for (int frame = 1; frame <= 10; ++frame) {
+        REQUIRE(resumed.restore(whole.checkpoint()));
+        whole.advance_to(0.02 * frame);
+        resumed.advance_to(0.02 * frame);
+        const bool goes_on = whole.checkpoint() == resumed.checkpoint();
+        CAPTURE(frame);
+        CHECK(goes_on);
+        deepest = std::max(deepest, whole.stats().collider_penetration);
+    }
+    CHECK(deepest > 0);
 }
 
 TEST_CASE("a checkpoint that another version of the program wrote is left alone") {
