@@ -202,12 +202,18 @@ bool Stepper::restrain_by_surfaces(const State& state, double dt) {
     Field inverse_mass(map_.n_dofs());
     for (int i = 0; i < map_.n_dofs(); ++i)
         inverse_mass[i] = inverse_mass_[i] * potential_.step().is_free[i];
+    double way = 0;  // of any corner that contact has changed in the last pass, at most
     for (int pass = 0; pass < contact_passes; ++pass) {
         // Found where the corners would end: again, as they end elsewhere once they are restrained.
-        if (pass > 0 && surfaces_.relinearize(x_end_) < depth_tolerance)
+        if (pass > 0
+            && (surfaces_.is_linear_enough(x_end_, way, depth_tolerance)
+                || surfaces_.relinearize(x_end_) < depth_tolerance))
             return true;
-        if (!surfaces_.restrain(state.x, map_, inverse_mass, dt, q_moved_) && pass == 0)
+        const std::optional<double> change =
+            surfaces_.restrain(state.x, map_, inverse_mass, dt, q_moved_);
+        if (!change && pass == 0)
             return false;
+        way = dt * change.value_or(0);
         map_.apply_and_move(q_moved_, moved_, state.x, dt, x_end_);
     }
     return true;

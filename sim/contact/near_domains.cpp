@@ -14,6 +14,20 @@ constexpr double most_used =
     0.3;  // of that from one call to the next; where bodies move by more, nothing is listed ahead
 constexpr double rounding = 1e-9;  // of distances, in domain edges
 
+/// Takes over those domains that any vertex has, of which `nearby` are the places.
+void keep_used(const std::vector<int>& domains, NearDomains& near) {
+    std::vector<int> place(domains.size(), -1);
+    for (const int i : near.nearby)
+        place[i] = 0;
+    for (std::size_t i = 0; i < domains.size(); ++i)
+        if (place[i] == 0) {
+            place[i] = static_cast<int>(near.domains.size());
+            near.domains.push_back(domains[i]);
+        }
+    for (int& i : near.nearby)
+        i = place[i];
+}
+
 }  // namespace
 
 NearDomains near_domains(const ContactSurface& of_vertices,
@@ -61,18 +75,27 @@ NearDomains near_domains(const ContactSurface& of_vertices,
         near.vertices.push_back(vertices[k]);
         near.first.push_back(static_cast<int>(near.nearby.size()));
     }
-    // Only domains that hold any.
-    std::vector<int> place(domains.size(), -1);
-    for (const int i : near.nearby)
-        place[i] = 0;
-    for (std::size_t i = 0; i < domains.size(); ++i)
-        if (place[i] == 0) {
-            place[i] = static_cast<int>(near.domains.size());
-            near.domains.push_back(domains[i]);
-        }
-    for (int& i : near.nearby)
-        i = place[i];
+    keep_used(domains, near);
     return near;
+}
+
+NearDomains only(const NearDomains& near, std::span<const int> vertices) {
+    NearDomains result;
+    std::size_t k = 0;
+    for (const int v : vertices) {
+        while (k < near.vertices.size() && near.vertices[k] < v)
+            ++k;
+        if (k == near.vertices.size())
+            break;
+        if (near.vertices[k] != v)
+            continue;
+        const std::span<const int> nearby = near.of_vertex(k);
+        result.nearby.insert(result.nearby.end(), nearby.begin(), nearby.end());
+        result.vertices.push_back(v);
+        result.first.push_back(static_cast<int>(result.nearby.size()));
+    }
+    keep_used(near.domains, result);
+    return result;
 }
 
 NearDomainLists::NearDomainLists(std::span<const ContactSurface> bodies)

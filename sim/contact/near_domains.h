@@ -47,6 +47,9 @@ NearDomains near_domains(const ContactSurface& of_vertices,
                          double beyond,
                          double ahead);
 
+/// What is listed of some of the vertices, ascending.
+NearDomains only(const NearDomains& near, std::span<const int> vertices);
+
 /// Keeps them for pairs of bodies from step to step (a Verlet list [Ver67]): they are listed with balls larger than needed,
 /// and that holds while no vertex can have come nearer to a domain by more. So it only saves work: listed is all that is
 /// near, and more that depends on when it was listed.

@@ -157,9 +157,12 @@ std::vector<ContactPoint> SurfaceContact::found(const Pair& pair, const Field& x
         return find_contacts(a, folds_[pair.of_domains].strangers(x), b, x, x_n_, pair.margin);
     if (!pair.is_near)
         return {};
-    const NearDomains& near =
-        near_.near(pair.of_vertices, pair.of_domains, x, pair.margin / b.lattice->edge);
-    return find_listed_contacts(a, near, b, x, x_n_, pair.margin);
+    return find_listed_contacts(a, near(pair, x), b, x, x_n_, pair.margin);
+}
+
+const NearDomains& SurfaceContact::near(const Pair& pair, const Field& x) {
+    const double edge = bodies_[pair.of_domains].lattice->edge;
+    return near_.near(pair.of_vertices, pair.of_domains, x, pair.margin / edge);
 }
 
 SurfaceContact::Contact SurfaceContact::prepared(const ContactPoint& point, int k) const {
@@ -206,11 +209,13 @@ std::vector<HeldContact> SurfaceContact::held(const Field& x) const {
 double SurfaceContact::relinearize(const Field& x) {
     const std::vector<Contact> before = std::move(contacts_);
     find(x);
-    return mismatch(before, x);
+    return mismatch(before, contacts_, x);
 }
 
-double SurfaceContact::mismatch(const std::vector<Contact>& before, const Field& x) const {
-    // Both are in the order of pairs and vertices; one that is in only one of them has no depth in the other.
+double SurfaceContact::mismatch(const std::vector<Contact>& before,
+                                const std::vector<Contact>& after,
+                                const Field& x) {
+    // One that is in only one of them has no depth in the other.
     const auto is_before = [](const Contact& a, const Contact& b) {
         return a.pair != b.pair ? a.pair < b.pair : a.index < b.index;
     };
@@ -219,7 +224,7 @@ double SurfaceContact::mismatch(const std::vector<Contact>& before, const Field&
     };
     double worst = 0;
     auto old = before.begin();
-    for (const Contact& contact : contacts_) {
+    for (const Contact& contact : after) {
         for (; old != before.end() && is_before(*old, contact); ++old)
             worst = std::max(worst, depth(*old));
         const bool is_known = old != before.end() && !is_before(contact, *old);

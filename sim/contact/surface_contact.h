@@ -60,6 +60,10 @@ class SurfaceContact : public ContactEnergy {
     /// of the domain's edge.
     double relinearize(const Field& x);
 
+    /// Whether relinearize(x) is known to return less than `tolerance`, where no corner is further than `way` [m] from where
+    /// the old linearisation was made. Knows more cheaply: of most contacts because they have hardly moved.
+    bool is_linear_enough(const Field& x, double way, double tolerance);
+
     double add_gradient(const Field& x, Field& gradient) const override;
     void linearize(const Field& x) override;
     void add_product(const Field& u, Field& product) const override;
@@ -77,12 +81,13 @@ class SurfaceContact : public ContactEnergy {
     /// What contact takes from velocities q of the degrees of freedom that would move corners from x in an explicit step of
     /// dt: impulses between vertices and domains that end the step where they touch, through the map, as only what it lets
     /// through moves corners, and friction of up to mu times as much. Inelastic, so that no energy comes of it.
-    /// `inverse_mass` (#dofs) is 0 in prescribed components [1/kg]. Returns whether there was anything to take.
-    bool restrain(const Field& x,
-                  const CornerMap& map,
-                  const Field& inverse_mass,
-                  double dt,
-                  Field& q) const;
+    /// `inverse_mass` (#dofs) is 0 in prescribed components [1/kg]. Returns by how much any q has changed [m/s], at most;
+    /// none where there was nothing to take.
+    std::optional<double> restrain(const Field& x,
+                                   const CornerMap& map,
+                                   const Field& inverse_mass,
+                                   double dt,
+                                   Field& q) const;
 
     /// Deepest penetration and smallest gap at x, as shares of the domain's edge; gaps are known up to `reach`.
     struct Report {
@@ -136,7 +141,11 @@ class SurfaceContact : public ContactEnergy {
     bool may_fold(const Pair& pair, const Start& start, double way, double dt);
     void find(const Field& x);
     std::vector<ContactPoint> found(const Pair& pair, const Field& x);
-    double mismatch(const std::vector<Contact>& before, const Field& x) const;
+    const NearDomains& near(const Pair& pair, const Field& x);
+    /// By how much depths of two lists in the order of pairs and vertices differ at x, at most, in domain edges.
+    static double mismatch(const std::vector<Contact>& before,
+                           const std::vector<Contact>& after,
+                           const Field& x);
     Contact prepared(const ContactPoint& point, int pair) const;
     double held_energy(int pair, int vertex) const;
 

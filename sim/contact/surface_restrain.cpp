@@ -1,4 +1,5 @@
 // Contact in explicit steps: impulses on the degrees of freedom.
+#include "sim/contact/contact_search.h"
 #include "sim/contact/surface_contact.h"
 
 #include <algorithm>
@@ -12,6 +13,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double enough = 1e-4;  // of a depth that may stay, in domain edges
 constexpr int most_sweeps = 100;
 constexpr int most_rounds = 8;
+constexpr double share_of_margin =
+    0.06;  // that corners may go: what lies outside of them goes up to eight times as far
 
 /// A contact as the degrees of freedom q see it, p - o moves by Σ_i w_i q_i, and what it has been given so far.
 class Impulse {
@@ -103,14 +106,15 @@ class Rows {
 
 }  // namespace
 
-bool SurfaceContact::restrain(const Field& x,
-                              const CornerMap& map,
-                              const Field& inverse_mass,
-                              double dt,
-                              Field& q) const {
+std::optional<double> SurfaceContact::restrain(const Field& x,
+                                               const CornerMap& map,
+                                               const Field& inverse_mass,
+                                               double dt,
+                                               Field& q) const {
     if (contacts_.empty())
-        return false;
+        return std::nullopt;
     // Contacts that would end inside, then those that the impulses of these bring inside.
+    const Field q_before = q;
     Rows rows(map);
     std::vector<Impulse> impulses;
     std::vector<char> is_in(contacts_.size(), 0);
@@ -141,7 +145,47 @@ bool SurfaceContact::restrain(const Field& x,
                 break;
         }
     }
-    return !impulses.empty();
+    if (impulses.empty())
+        return std::nullopt;
+    double squared = 0;
+    for (std::size_t i = 0; i < q.size(); ++i)
+        squared = std::max(squared, dot(q[i] - q_before[i], q[i] - q_before[i]));
+    return std::sqrt(squared);
+}
+
+bool SurfaceContact::is_linear_enough(const Field& x, double way, double tolerance) {
+    // A vertex that no contact was made of must go further than the margin to get inside.
+    for (const Pair& pair : pairs_)
+        if (!(way < share_of_margin * pair.margin))
+            return false;
+    // Depths of p - o that moves by u change as if linear but for 2 |u|, where the normal turns by less than 60 degrees. What
+    // may change by more, and may touch, is looked at again.
+    std::vector<Contact> before, after;
+    for (const Contact& contact : contacts_) {
+        const Vec3 apart = contact.separation(x);
+        const double most = 2 * apart.norm();
+        if (most < tolerance * contact.edge || contact.gap + contact.normal.dot(apart) > most)
+            continue;
+        if (pairs_[contact.pair].is_self())
+            return false;
+        before.push_back(contact);
+    }
+    near_.see();
+    for (auto begin = before.begin(); begin != before.end();) {
+        const int k = begin->pair;
+        const Pair& pair = pairs_[k];
+        std::vector<int> vertices;
+        for (; begin != before.end() && begin->pair == k; ++begin)
+            vertices.push_back(begin->index);
+        for (const ContactPoint& point : find_listed_contacts(bodies_[pair.of_vertices],
+                                                              only(near(pair, x), vertices),
+                                                              bodies_[pair.of_domains],
+                                                              x,
+                                                              x_n_,
+                                                              pair.margin))
+            after.push_back(prepared(point, k));
+    }
+    return mismatch(before, after, x) < tolerance;
 }
 
 }  // namespace sim

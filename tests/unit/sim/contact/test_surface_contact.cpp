@@ -288,3 +288,39 @@ TEST_CASE("explicit contact takes what would end inside, keeps momentum and make
                  .epsilon(1e-2)
                  .margin(1e-12));
 }
+
+TEST_CASE("a linearisation is called linear enough only where a new one differs by less") {
+    Blocks blocks({false, 0.3});
+    tests::Random random(5);
+    const double tolerance = 1e-4;
+    int n_enough = 0, n_looked_at = 0, n_not = 0;
+    for (int k = 0; k < 400; ++k) {
+        const double size = edge * std::pow(10.0, -5 + 4 * (k % 40) / 40.0);
+        const Field apart = blocks.at({0, 0, 0.01 * edge}, bent),
+                    x = blocks.at({0, 0, -0.005 * edge}, bent);
+        // All slides, and every corner goes a little by itself.
+        Field x_next = x;
+        const Vec3 slip = tests::random_vector(random, size);
+        double way = 0;
+        for (std::size_t c = 0; c < x.size(); ++c) {
+            const Vec3 u = tests::random_vector(random, 0.3 * size)
+                           + (static_cast<int>(c) < blocks.n_small ? slip : Vec3(0, 0, 0));
+            x_next[c] += sim::padded(u);
+            way = std::max(way, u.norm());
+        }
+        blocks.step(apart, x);
+        const bool is_enough = blocks.contact.is_linear_enough(x_next, way, tolerance);
+        const double differs = blocks.contact.relinearize(x_next);
+        CAPTURE(size / edge, differs);
+        if (is_enough)
+            CHECK(differs < tolerance);
+        else
+            CHECK((differs >= tolerance || size > 5e-3 * edge));
+        n_enough += is_enough;
+        n_looked_at += is_enough && size > tolerance * edge;
+        n_not += differs >= tolerance;
+    }
+    CHECK(n_enough > 100);
+    CHECK(n_looked_at > 20);
+    CHECK(n_not > 20);
+}
