@@ -134,7 +134,9 @@ class Stepper {
     void kick_between_drifts();
     bool has_kept_way(const Field& x) const;
     bool is_clear_of_surfaces(const State& state, double dt);
-    bool restrain_by_colliders(const Field& x, double length);
+    // Returns how deep a corner would have got in, in domain edges.
+    double restrain_by_colliders(const Field& x, double length);
+    Field free_inverse_mass();
     bool restrain_by_surfaces(const State& state, double dt);
     double second_kick(const Field& gradient_before);
     void kick_nodes(const State& state, double dt);

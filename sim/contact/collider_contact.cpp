@@ -16,10 +16,6 @@ constexpr double margin = 0.5;         // of the domain's edge, where corners co
 constexpr double share_of_thickness =
     0.4;  // that a corner may pass in a step where it is about to touch
 
-Vec3 tangential(const Vec3& u, const Vec3& normal) {
-    return u - normal * normal.dot(u);
-}
-
 double finest_edge(const std::vector<ContactCorner>& corners) {
     double edge = infinity;
     for (const ContactCorner& corner : corners)
@@ -218,26 +214,23 @@ double ColliderContact::add_gradient(const Field& x, Field& gradient) const {
     return energy;
 }
 
-std::vector<int> ColliderContact::restrain(const Field& x, double dt, Field& v) const {
-    std::vector<int> restrained;
-    const auto end = [&](int c) { return x[c] + dt * v[c]; };  // as v is by then
+std::vector<ColliderContact::Stop> ColliderContact::stops(const Field& x,
+                                                          const Field& v,
+                                                          double dt,
+                                                          double least_depth) const {
+    std::vector<Stop> stops;
+    const auto end = [&](int c) { return x[c] + dt * v[c]; };
     for_pairs(end, [&](int k, int j, const Pair&, double depth, const Vec3& normal) {
-        if (!(depth > 0))
+        const auto& [c, body, outside, stiffness, mass, edge] = corners_[k];
+        if (!(depth > least_depth * edge))
             return;
-        const int c = corners_[k].corner;
-        if (restrained.empty() || restrained.back() != c)  // one corner comes after the other
-            restrained.push_back(c);
-        Vec3p& velocity = v[c];
-        const double stopped = depth / dt;
-        const Vec3 at = unpadded(x[c]);
-        const Vec3 surface = (poses_[j].carry(start_poses_[j].bring_back(at)) - at) / dt;
-        const Vec3 slip = tangential(unpadded(velocity) - surface, normal);
-        const Friction& friction = colliders_[j].friction();
-        const double most = friction.stick ? infinity : friction.coefficient * stopped;
-        const double share = std::min(1.0, most / std::max(slip.norm(), 1e-300));
-        velocity += padded(stopped * normal - share * slip);
+        const Vec3 at = unpadded(x[c]),
+                   carried = (poses_[j].carry(start_poses_[j].bring_back(at)) - at) / dt;
+        const double way = normal.dot(dt * (unpadded(v[c]) - carried));
+        stops.push_back(
+            {c, depth / edge, {normal, -depth - way, edge, colliders_[j].friction(), carried}});
     });
-    return restrained;
+    return stops;
 }
 
 void ColliderContact::linearize(const Field& x) {

@@ -4,6 +4,7 @@
 #include "sim/base/field.h"
 #include "sim/contact/contact_energy.h"
 #include "sim/contact/grip.h"
+#include "sim/contact/impulses.h"
 #include "sim/contact/moving_collider.h"
 #include "sim/contact/near_corners.h"
 
@@ -59,10 +60,16 @@ class ColliderContact : public ContactEnergy {
     void add_product(const Field& u, Field& product) const override;
     void add_diagonal(Field& diagonal) const override;
 
-    /// What colliders take from velocities v (#C) that would move corners from x in an explicit step of dt: the part that
-    /// would end inside, and friction of up to mu times as much, each corner for itself. Inelastic, so that no energy
-    /// comes of it (Moreau's stepping). Returns the corners that something was taken from, each once.
-    std::vector<int> restrain(const Field& x, double dt, Field& v) const;
+    /// A corner that an explicit step would move into a collider.
+    struct Stop {
+        int corner = 0;    // in the field of all corners
+        double depth = 0;  // where the step would end [domain edges]
+        Impulses::Touch touch;
+    };
+
+    /// Those that velocities v (#C) would move from x by more than `depth` [domain edges] into a collider in a step of dt, each
+    /// with the collider as a plane where the corner would end.
+    std::vector<Stop> stops(const Field& x, const Field& v, double dt, double depth) const;
 
     /// Of a corner in a collider.
     struct Penetration {
@@ -109,7 +116,7 @@ class ColliderContact : public ContactEnergy {
     double depth_in_step(int k, int j, const Start& start, const Vec3& x, Vec3& normal) const;
 
     // All that may touch where the step ends with corners of the field at `at(corner)`, corner by corner and by collider:
-    // visit(k, j, pair, depth, normal). A visit may move its own corner: a near one meets every collider.
+    // visit(k, j, pair, depth, normal).
     template <class Position, class Visit>
     void for_pairs(const Position& at, const Visit& visit) const;
     template <class Visit>

@@ -1,0 +1,66 @@
+// Impulses of contact in explicit steps, on the degrees of freedom.
+#pragma once
+
+#include "assets/base/vector_types.h"
+#include "sim/base/field.h"
+#include "sim/grid/corner_map.h"
+#include "sim/scene.h"
+
+#include <span>
+#include <vector>
+
+namespace sim {
+
+/// What contacts take from velocities q that would move bodies into what they touch in an explicit step of dt: impulses
+/// that end the step where they touch, and friction of up to mu times as much, by projected Gauss-Seidel sweeps. Inelastic,
+/// so that no energy comes of it (Moreau's stepping). Impulses act through the map, as only what it lets through moves
+/// corners: a corner that were given more would ask for the same again, and pile up speed.
+class Impulses {
+  public:
+    /// What touches, p, against what is touched, o.
+    struct Touch {
+        Vec3 normal{0, 0, 1};  // unit, out of o
+        double gap = 0;   // of p - o along it at the start of the step, negative inside [m]
+        double edge = 0;  // of a domain, for tolerances [m]
+        Friction friction;
+        Vec3 carried{0, 0, 0};  // velocity of o where no degree of freedom moves it [m/s]
+    };
+
+    /// p - o moves by Σ weight v_corner.
+    struct Share {
+        int corner = 0;
+        double weight = 0;
+    };
+
+    /// `inverse_mass` (#dofs) is 0 in prescribed components [1/kg]. Both are referred to.
+    Impulses(const CornerMap& map, const Field& inverse_mass, double dt);
+
+    std::size_t size() const { return impulses_.size(); }
+
+    void add(const Touch& touch, std::span<const Share> shares);
+
+    /// Settles all, also those of earlier calls, until none changes a depth by more than 1e-4 domain edges.   q (#dofs)
+    void settle(Field& q);
+
+  private:
+    struct Impulse {
+        Touch touch;
+        int first = 0, last = 0;                       // of weights_
+        double inverse_along = 0, inverse_across = 0;  // mass that is pushed and held [1/kg]
+        double push = 0;                               // along the normal, never negative [N s]
+        Vec3 hold{0, 0, 0};                            // across it [N s]
+    };
+
+    void add_row(int corner, double factor, int first);
+    double settle(Impulse& impulse, Field& q) const;
+
+    const CornerMap& map_;
+    const Field& inverse_mass_;
+    double dt_ = 0;
+    std::vector<Impulse> impulses_;
+    std::vector<CornerMap::Weight> weights_;  // of p - o in q, each degree of freedom once
+    std::vector<int> place_;  // (#dofs) in weights_ of the sum that is being made, -1: none
+    std::vector<CornerMap::Weight> row_;
+};
+
+}  // namespace sim
