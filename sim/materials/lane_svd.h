@@ -45,10 +45,7 @@ struct OrthogonalColumns {
                 c * c / (column_dot(result.B, i, i) * column_dot(result.B, j, j) + tiny);
             result.defect = select_positive(defect - result.defect, defect, result.defect);
         }
-        double worst = 0;
-        for (int l = 0; l < lane_count; ++l)
-            worst = result.defect[l] > worst ? result.defect[l] : worst;
-        if (!(worst > rounding * rounding) || sweep == most_sweeps)
+        if (!(largest_lane(result.defect) > rounding * rounding) || sweep == most_sweeps)
             return result;
         for (int i = 0; i < 3; ++i) {
             const int j = (i + 1) % 3;

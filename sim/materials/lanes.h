@@ -82,6 +82,19 @@ template <class S>
         S, (__builtin_bit_cast(Bits, a) & mask) | (__builtin_bit_cast(Bits, b) & ~mask));
 }
 
+/// The largest entry, passing over those that are NaN.
+[[gnu::always_inline]] inline double largest_lane(double x) {
+    return x;
+}
+
+template <class S>
+[[gnu::always_inline]] inline double largest_lane(const S& x) {
+    double largest = -std::numeric_limits<double>::infinity();
+    for (std::size_t lane = 0; lane < sizeof(S) / sizeof(double); ++lane)
+        largest = x[lane] > largest ? x[lane] : largest;
+    return largest;
+}
+
 [[gnu::always_inline]] inline double sqrt_of(double x) {
     return std::sqrt(x);
 }

@@ -49,14 +49,19 @@ template <class S>
 
 template <class S>
 [[gnu::always_inline]] inline RotationGuess<S> nearest_rotation_guess(const Matrix3<S>& F) {
-    constexpr int newton_steps = 5;  // enough for stretches from 1/2 to 2
+    constexpr int most_newton_steps = 5;  // enough for stretches from 1/2 to 2
+    constexpr double settled = 1e-4;  // change of x over ‖F‖: about its square is left then
+    constexpr double rounding = 1e-15;  // defect of which a correction leaves an eighth
     const Matrix3<S> C = cofactor(F);
     const S J = determinant(F, C), size_squared = inner(F, F), area_squared = inner(C, C);
     const S size = sqrt_of(size_squared);
     S x = std::sqrt(3.0) * size;
-    for (int step = 0; step < newton_steps; ++step) {
+    for (int step = 0; step < most_newton_steps; ++step) {
         const S y = x * x - size_squared;
-        x = x - (y * y - 8.0 * J * x - 4.0 * area_squared) / (4.0 * (x * y - 2.0 * J));
+        const S change = (y * y - 8.0 * J * x - 4.0 * area_squared) / (4.0 * (x * y - 2.0 * J));
+        x = x - change;
+        if (!(largest_lane(S(change - settled * size)) > 0))
+            break;
     }
     const S kappa = 0.5 * (x * x - size_squared), zeta = kappa * x - J;
     const S inverse_zeta = 1.0 / zeta;
@@ -64,17 +69,19 @@ template <class S>
     for (int n = 0; n < 9; ++n)
         R.m[n] = ((kappa + size_squared) * F.m[n] + x * C.m[n] - R.m[n]) * inverse_zeta;
 
-    S defect =
-        uniform<S>(0);  // ‖I − R^T R‖², before the first of two corrections, each squaring it
+    // Two corrections, each squaring what is wrong, or one where that is enough in every lane.
+    S defect = uniform<S>(0);  // ‖I − R^T R‖² before the first
     for (int correction = 0; correction < 2; ++correction) {
         Matrix3<S> half = gram(R);
         for (int n = 0; n < 9; ++n)
             half.m[n] = (n % 4 == 0 ? 0.5 : 0.0) - 0.5 * half.m[n];
-        if (correction == 0)
-            defect = 4.0 * inner(half, half);
         const Matrix3<S> change = product(R, half);
         for (int n = 0; n < 9; ++n)
             R.m[n] = R.m[n] + change.m[n];
+        if (correction == 0)
+            defect = 4.0 * inner(half, half);
+        if (!(largest_lane(defect) > rounding))
+            break;
     }
     const S separated = zeta - 1e-3 * size_squared * size;
     return {R, select_positive(1e-8 - defect, separated, uniform<S>(-1))};
