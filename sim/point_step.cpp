@@ -142,11 +142,12 @@ double Stepper::relative_limit(const State& state) const {
     for (std::size_t b = 0; b < n; ++b) {
         const auto& [begin, end, cell_size, kernel] = ranges_[b];
         for (int c = begin; c < end; ++c)
-            mean[b] += state.v[c] / double(end - begin);
-        for (int c = begin; c < end; ++c) {
-            const Vec3p about = state.v[c] - mean[b];
-            deviation[b] = std::max(deviation[b], std::sqrt(dot(about, about)));
-        }
+            mean[b] += state.v[c];
+        mean[b] /= double(end - begin);
+        double squared = 0;
+        for (int c = begin; c < end; ++c)
+            squared = std::max(squared, dot(state.v[c] - mean[b], state.v[c] - mean[b]));
+        deviation[b] = std::sqrt(squared);
     }
     double limit = std::numeric_limits<double>::infinity();
     for (std::size_t a = 0; a < n; ++a)
