@@ -64,6 +64,7 @@ PointEnergy::PointEnergy(const CornerMap& map,
       points_(points),
       mu_(points.mu),
       lambda_(points.lambda),
+      J_of_moduli_(points.size(), 1.0),
       F_next_(points.size()) {
     for (int p = 0; p < points.size(); ++p) {
         law_.push_back(static_cast<unsigned char>(law_of(points.model[points.region[p]])));
@@ -75,8 +76,9 @@ PointEnergy::PointEnergy(const CornerMap& map,
 void PointEnergy::begin_step(const PointState& state) {
     state_ = &state;
     for (int p = 0; p < points_.size(); ++p) {
-        if (!points_.is_snow(p))
+        if (state.J_plastic[p] == J_of_moduli_[p] || !points_.is_snow(p))
             continue;
+        J_of_moduli_[p] = state.J_plastic[p];
         const double harder =
             std::exp(points_.snow[points_.region[p]].hardening * (1 - state.J_plastic[p]));
         mu_[p] = harder * points_.mu[p];

@@ -69,6 +69,7 @@ class PointEnergy : public GridEnergy {
     std::vector<unsigned char> law_;   // (#P)
     unsigned laws_ = 0;                // a bit for each of them
     std::vector<double> mu_, lambda_;  // (#P) of this step [Pa]
+    std::vector<double> J_of_moduli_;  // (#P) J_P that they are of: few points yield in a step
     double scale_ = 0;
     const PointState* state_ = nullptr;
     std::vector<Matrix3<double>> F_next_;    // (#P) of the last add_gradient()
