@@ -8,6 +8,7 @@ namespace {
 
 constexpr int most_iterations = 8;
 constexpr double enough = 1e-12;  // of a step in u
+constexpr double close = 1e-6;    // of the last one, which leaves about its square
 constexpr double farthest = 3.5;  // u where the domain has been left for good
 
 Vec3p magnitude(const Vec3p& v) {
@@ -25,6 +26,7 @@ double DomainMap::bend(const Gradient3& at_centre, double most) const {
 }
 
 bool DomainMap::invert(const Vec3p& point, Vec3p& u) const {
+    double squared = 0;  // of a step
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
         const Gradient3 slope = gradient(u);
         if (!(slope.determinant > 0))
@@ -33,10 +35,11 @@ bool DomainMap::invert(const Vec3p& point, Vec3p& u) const {
         u += step;
         if (!(largest_entry(magnitude(u)) < farthest))
             return false;
-        if (dot(step, step) < enough * enough)
+        squared = dot(step, step);
+        if (squared < enough * enough)
             break;
     }
-    return true;
+    return squared < close * close;
 }
 
 }  // namespace sim

@@ -101,6 +101,27 @@ TEST_CASE("an inverted domain, and a point that is far off a bent one, are not i
     Vec3p u{};
     CHECK_FALSE(map_of(corners).invert(sim::padded(Vec3::Constant(edge / 3)), u));
     tests::Random random(3);
-    u = Vec3p{};
-    CHECK_FALSE(map_of(bent_cube(random, 0)).invert(sim::padded(far_off + Vec3(9, 0, 0)), u));
+    for (int k = 0; k < 50; ++k) {
+        u = Vec3p{};
+        const Vec3 off = far_off + 9 * tests::random_vector(random).normalized();
+        CHECK_FALSE(map_of(bent_cube(random, 0.15)).invert(sim::padded(off), u));
+    }
+}
+
+TEST_CASE("what is said to be inverted is, even of a domain with a corner pushed through") {
+    tests::Random random(4);
+    int n_inverted = 0, n_not = 0;
+    for (int k = 0; k < 2000; ++k) {
+        std::array<Vec3, 8> corners = bent_cube(random, 0.15);
+        corners[7] += tests::between(random, 0.6, 1.2) * (corners[0] - corners[7]);
+        const sim::DomainMap map = map_of(corners);
+        const Vec3 x = place(corners, tests::random_vector(random, 0.75));
+        Vec3p u{};
+        const bool is_inverted = map.invert(sim::padded(x), u);
+        if (is_inverted)
+            CHECK((sim::unpadded(map.at(u)) - x).norm() < 1e-11 * edge);
+        ++(is_inverted ? n_inverted : n_not);
+    }
+    CHECK(n_inverted > 200);
+    CHECK(n_not > 200);
 }
