@@ -2,6 +2,7 @@
 
 #include "sim/base/floor.h"
 #include "sim/base/parallel.h"
+#include "sim/contact/domain_hull.h"
 #include "sim/contact/domain_map.h"
 #include "sim/embedding/trilinear.h"
 
@@ -24,7 +25,7 @@ constexpr double seam =
 /// A deformed domain, and the linear part of the map from the world to its cube.
 struct Candidate {
     int domain = 0;
-    DomainBall ball;
+    Ball ball;  // of what it is continued to
     DomainMap map;
     Gradient3 at_centre;
     double bend = 0;  // DomainMap::bend, as far as it is continued
@@ -83,10 +84,11 @@ class Search {
 
   private:
     Candidate candidate(int p) const {
-        const std::array<Vec3p, 8> corners = b_.domain_corners(p, x_);
+        std::array<Vec3p, 8> corners = b_.domain_corners(p, x_);
         const DomainMap map(corners);
         const Gradient3 at_centre = map.gradient_at_centre();
-        return {p, {corners, beyond_}, map, at_centre, map.bend(at_centre, 0.5 + beyond_)};
+        go_beyond(beyond_, corners);
+        return {p, Ball(corners), map, at_centre, map.bend(at_centre, 0.5 + beyond_)};
     }
 
     void look_at(int k, std::vector<ContactPoint>& found) const {

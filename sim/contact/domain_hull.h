@@ -34,28 +34,40 @@ struct HullDirections {
 
 inline const HullDirections hull_directions;
 
-constexpr double beyond_domain = 0.25;  // of domains beyond themselves, in domain edges
-
-/// From what a trilinear map gives at the corners of a cube to what it gives a quarter beyond them.
-inline void go_beyond(std::array<Vec3p, 8>& corners) {
+/// From what a trilinear map gives at the corners of a cube to what it gives `share` of an edge beyond them.
+inline void go_beyond(double share, std::array<Vec3p, 8>& corners) {
 #pragma GCC unroll 3
     for (int axis = 1; axis < 8; axis *= 2)
 #pragma GCC unroll 8
         for (int a = 0; a < 8; ++a)
             if (!(a & axis)) {
-                const Vec3p beyond = beyond_domain * (corners[a | axis] - corners[a]);
+                const Vec3p beyond = share * (corners[a | axis] - corners[a]);
                 corners[a] -= beyond;
                 corners[a | axis] += beyond;
             }
 }
 
-/// A continued domain from outside: its extent in each direction, and a ball.
+/// Around the mean of a domain's corners, so large that it holds them: all that the trilinear map gives between them, too.
+struct Ball {
+    Vec3p centre{};             // [m]
+    double squared_radius = 0;  // [m²]
+
+    explicit Ball(const std::array<Vec3p, 8>& corners) {
+        for (const Vec3p& x : corners)
+            centre += 0.125 * x;
+        for (const Vec3p& x : corners)
+            squared_radius = std::max(squared_radius, dot(x - centre, x - centre));
+    }
+
+    bool holds(const Vec3p& x) const { return dot(x - centre, x - centre) <= squared_radius; }
+};
+
+/// A domain from outside: its extent in each direction, and a ball.
 struct Hull {
-    Vec3p centre{};
-    double squared_radius = 0;
+    Ball ball;
     std::array<Vec3p, HullDirections::n_fours> low, high;
 
-    explicit Hull(const std::array<Vec3p, 8>& corners) {
+    explicit Hull(const std::array<Vec3p, 8>& corners) : ball(corners) {
         for (int k = 0; k < HullDirections::n_fours; ++k) {
             low[k] = high[k] = hull_directions.along(k, corners[0]);
             for (int a = 1; a < 8; ++a) {
@@ -64,10 +76,6 @@ struct Hull {
                 high[k] = larger(high[k], along);
             }
         }
-        for (const Vec3p& x : corners)
-            centre += 0.125 * x;
-        for (const Vec3p& x : corners)
-            squared_radius = std::max(squared_radius, dot(x - centre, x - centre));
     }
 
     /// Of x, along the direction that parts it most; changes by no more than x moves, seen from the corners.   [m]
@@ -81,9 +89,7 @@ struct Hull {
     }
 
     /// Whether neither the ball nor any direction parts them.
-    bool holds(const Vec3p& x) const {
-        return gap(x) <= 0 && dot(x - centre, x - centre) <= squared_radius;
-    }
+    bool holds(const Vec3p& x) const { return gap(x) <= 0 && ball.holds(x); }
 };
 
 }  // namespace sim

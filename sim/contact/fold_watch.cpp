@@ -12,7 +12,8 @@ namespace sim {
 
 namespace {
 
-constexpr double watched = 0.9;  // gaps of vertices that are listed, in domain edges
+constexpr double beyond_domain = 0.25;  // that strangers are continued, in their edges
+constexpr double watched = 0.9;         // gaps of vertices that are listed, in domain edges
 constexpr double most_used =
     0.3;  // of that from call to call; where gaps change by more, only what is in a stranger is listed
 constexpr int chunk = 64;
@@ -102,7 +103,7 @@ void FoldWatch::look_at(int p, double within, std::vector<Near>& near) const {
     std::array<Vec3p, 8> corners;
     for (int a = 0; a < 8; ++a)
         corners[a] = seen_[surface_->lattice->corners[p][a]];
-    go_beyond(corners);
+    go_beyond(beyond_domain, corners);
     PaddedBounds bounds;
     for (const Vec3p& corner : corners)
         bounds.add(corner);
@@ -124,7 +125,7 @@ bool FoldWatch::is_in(const Near& near, const Field& x) const {
     std::array<Vec3p, 8> corners;
     for (int a = 0; a < 8; ++a)
         corners[a] = now_.seen(x[surface_->begin + surface_->lattice->corners[near.domain][a]]);
-    go_beyond(corners);
+    go_beyond(beyond_domain, corners);
     const ContactVertex& vertex = surface_->vertices[near.vertex];
     Vec3p at{};
     for (int a = 0; a < 8; ++a)

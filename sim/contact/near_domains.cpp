@@ -1,5 +1,6 @@
 #include "sim/contact/near_domains.h"
 
+#include "sim/contact/domain_hull.h"
 #include "sim/contact/point_grid.h"
 
 #include <algorithm>
@@ -47,18 +48,21 @@ NearDomains near_domains(const ContactSurface& of_vertices,
     }
     // Balls of the shell that reach there.
     std::vector<int> domains;
-    std::vector<DomainBall> balls;
+    std::vector<Ball> balls;
     std::vector<Vec3> centres;
     double largest = 0;
     for (const int p : of_domains.shell) {
-        DomainBall ball(of_domains.domain_corners(p, x), beyond);
-        ball.radius += ahead;
-        if (!region.contains(unpadded(ball.centre), ball.radius))
+        std::array<Vec3p, 8> corners = of_domains.domain_corners(p, x);
+        go_beyond(beyond, corners);
+        Ball ball(corners);
+        const double radius = std::sqrt(ball.squared_radius) + ahead;
+        if (!region.contains(unpadded(ball.centre), radius))
             continue;
+        ball.squared_radius = radius * radius;
         domains.push_back(p);
         balls.push_back(ball);
         centres.push_back(unpadded(ball.centre));
-        largest = std::max(largest, ball.radius);
+        largest = std::max(largest, radius);
     }
     if (domains.empty())
         return near;
@@ -130,12 +134,15 @@ const PaddedBounds& NearDomainLists::moved(int b, const Field& x) {
 
 double NearDomainLists::approach(int a, int b, const Field& x, double beyond) {
     // A vertex moves in the box of what its corners move, made wider where not all of its weights are positive; the centre
-    // of a domain in that of its own, and its corners from there by no more than the size of that.
+    // of a domain in that of its own. What is continued moves as a mean of corners and a multiple of what these part
+    // (FoldWatch): its distance from the centre changes by no more than that multiple, and once more, of the size of the box.
+    const double continued =
+        std::pow(1 + 2 * beyond, 3);  // the sum of its weights without their signs
     const PaddedBounds &of_a = moved(a, x), &of_b = moved(b, x);
     const Vec3p middle = (of_a.low + of_a.high) / 2,
                 half = of_vertex_[a] * (of_a.high - middle);
     const PaddedBounds of_vertex{middle - half, middle + half};
-    return of_vertex.farthest(of_b) + (1 + 2 * beyond) * of_b.farthest(of_b)
+    return of_vertex.farthest(of_b) + (1 + continued) / 2 * of_b.farthest(of_b)
            + rounding * bodies_[b].lattice->edge;
 }
 

@@ -10,25 +10,7 @@
 
 namespace sim {
 
-/// The ball in which a deformed domain is looked for, around it and what its map is continued by.
-struct DomainBall {
-    Vec3p centre{};     // mean of the corners [m]
-    double radius = 0;  // [m]
-
-    /// `beyond`: the share of the domain by which it is continued.
-    DomainBall(const std::array<Vec3p, 8>& corners, double beyond) {
-        for (const Vec3p& corner : corners)
-            centre += 0.125 * corner;
-        double squared = 0;
-        for (const Vec3p& corner : corners)
-            squared = std::max(squared, dot(corner - centre, corner - centre));
-        radius = (1 + 2 * beyond) * std::sqrt(squared);
-    }
-
-    bool holds(const Vec3p& x) const { return dot(x - centre, x - centre) <= radius * radius; }
-};
-
-/// Vertices of one body, and for each of them the domains of the shell of another whose balls hold it, all ascending.
+/// Vertices of one body, and for each of them the domains of the shell of another near it, all ascending.
 struct NearDomains {
     std::vector<int> vertices, domains;  // of the bodies
     std::vector<int> first{0}, nearby;   // (#vertices + 1), (#pairs) places in `domains`
@@ -39,7 +21,8 @@ struct NearDomains {
     }
 };
 
-/// Of `vertices`, ascending, at x (#C); the balls are made larger by `ahead` [m].
+/// Of `vertices`, ascending, at x (#C): domains whose balls, of what their maps are continued to by the share `beyond` of a
+/// domain, hold the vertex or are no further than `ahead` [m] from it.
 NearDomains near_domains(const ContactSurface& of_vertices,
                          std::span<const int> vertices,
                          const ContactSurface& of_domains,

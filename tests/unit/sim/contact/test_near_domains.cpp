@@ -1,5 +1,7 @@
 #include "sim/contact/contact_search.h"
+#include "sim/contact/domain_hull.h"
 #include "sim/contact/near_domains.h"
+#include "sim/embedding/trilinear.h"
 #include "tests/support/box_body.h"
 #include "tests/support/random_fields.h"
 
@@ -11,6 +13,7 @@
 #include <set>
 
 using sim::Field;
+using sim::Vec3p;
 
 // What is listed must not show: all is compared with every vertex against every domain.
 
@@ -50,20 +53,31 @@ Pairs listed(const sim::NearDomains& near) {
     return pairs;
 }
 
-/// No further from the mean of a domain's corners than the furthest of them, and 2 `beyond` of that.
+/// What the map of a domain gives at u, its centre being the origin and its edge 1.   [m]
+Vec3 place(const std::array<Vec3p, 8>& corners, const Vec3& u) {
+    const auto w = sim::trilinear_weights(u + Vec3::Constant(0.5));
+    Vec3 sum = Vec3::Zero();
+    for (int a = 0; a < 8; ++a)
+        sum += w[a] * sim::unpadded(corners[a]);
+    return sum;
+}
+
+Vec3 corner_of_cube(int a) {
+    return Vec3(a & 1, a >> 1 & 1, a >> 2) - Vec3::Constant(0.5);
+}
+
+/// No further from the centre of a domain than the furthest corner of what it is continued to.
 Pairs by_brute_force(const sim::ContactSurface& a,
                      const sim::ContactSurface& b,
                      const Field& x) {
     Pairs pairs;
     for (const int p : b.shell) {
-        std::array<Vec3, 8> corners;
-        std::ranges::transform(b.domain_corners(p, x), corners.begin(), sim::unpadded);
-        Vec3 centre = Vec3::Zero();
-        for (const Vec3& corner : corners)
-            centre += corner / 8;
+        const std::array<Vec3p, 8> corners = b.domain_corners(p, x);
+        const Vec3 centre = place(corners, Vec3::Zero());
         double radius = 0;
-        for (const Vec3& corner : corners)
-            radius = std::max(radius, (1 + 2 * beyond) * (corner - centre).norm());
+        for (int c = 0; c < 8; ++c)
+            radius = std::max(
+                radius, (place(corners, (1 + 2 * beyond) * corner_of_cube(c)) - centre).norm());
         for (std::size_t v = 0; v < a.vertices.size(); ++v)
             if ((a.vertices[v].position(x) - centre).norm() < radius * (1 - 1e-12))
                 pairs.emplace(static_cast<int>(v), p);
@@ -82,6 +96,42 @@ bool are_equal(const std::vector<sim::ContactPoint>& a,
 }
 
 }  // namespace
+
+TEST_CASE("a ball holds all that the map of a bent domain is continued to") {
+    tests::Random random(2);
+    for (int k = 0; k < 100; ++k) {
+        std::array<Vec3p, 8> corners;
+        for (int a = 0; a < 8; ++a)
+            corners[a] = sim::padded(corner_of_cube(a) + tests::random_vector(random, 0.2));
+        std::array<Vec3p, 8> continued = corners;
+        sim::go_beyond(beyond, continued);
+        sim::Ball ball(continued);
+        ball.squared_radius *= 1 + 1e-12;
+        double furthest = 0;
+        for (int a = 0; a < 8; ++a)
+            for (const double share : {1.0, 0.9}) {
+                const Vec3 u = share * (1 + 2 * beyond) * corner_of_cube(a);
+                const Vec3p x = sim::padded(place(corners, u));
+                CHECK(ball.holds(x));
+                furthest = std::max(furthest, sim::dot(x - ball.centre, x - ball.centre));
+            }
+        CHECK(furthest == Approx(ball.squared_radius));
+    }
+}
+
+TEST_CASE("of bent bodies those domains are listed whose balls hold a vertex") {
+    const Two two;
+    tests::Random random(3);
+    for (int k = 0; k < 5; ++k) {
+        Field x = two.at({2 * edge, 2 * edge, 4.6 * edge}, {0, 0, 0}, 0.3 * k, 0);
+        for (Vec3p& at : x)
+            at += sim::padded(tests::random_vector(random, 0.25 * edge));
+        const auto near = sim::near_domains(
+            two.surfaces[0], two.surfaces[0].all_vertices(), two.surfaces[1], x, beyond, 0);
+        CHECK(listed(near) == by_brute_force(two.surfaces[0], two.surfaces[1], x));
+        CHECK(near.vertices.size() > 20);
+    }
+}
 
 TEST_CASE("lists of near domains miss none while bodies pass each other at any speed") {
     const Two two;
