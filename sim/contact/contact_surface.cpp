@@ -106,6 +106,10 @@ ContactSurface::ContactSurface(const Body& body,
         for (int a = 0; a < 8; ++a)
             vertex.corners[a] = begin + lattice->corners[p][a];
         vertices.push_back(vertex);
+        double sum = 0;
+        for (const double w : vertex.weights)
+            sum += std::abs(w);
+        largest_weight_sum = std::max(largest_weight_sum, sum);
     }
     for (int p = 0; p < lattice->n_domains(); ++p) {
         Vec3 ignored;

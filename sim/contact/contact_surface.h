@@ -57,7 +57,8 @@ struct ContactSurface {
 
     std::vector<ContactVertex> vertices;
     assets::DistanceField distance;  // at rest
-    double thickness = 0;            // smallest extent of its bounds [m]
+    double largest_weight_sum = 1;  // of a vertex, without signs: more than 1 beyond its domain
+    double thickness = 0;           // smallest extent of its bounds [m]
     const Lattice* lattice = nullptr;
     int scene_body = 0;      // index of the body in the scene
     int begin = 0;           // of its corners in the field of all corners

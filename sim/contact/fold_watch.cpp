@@ -14,24 +14,14 @@ namespace {
 
 constexpr double beyond_domain = 0.25;  // that strangers are continued, in their edges
 constexpr double watched = 0.9;         // gaps of vertices that are listed, in domain edges
-constexpr double most_used =
-    0.3;  // of that from call to call; where gaps change by more, only what is in a stranger is listed
 constexpr int chunk = 64;
-constexpr double rounding = 1e-9;  // of distances, in domain edges
 
 }  // namespace
 
 FoldWatch::FoldWatch(const ContactSurface& surface) : surface_(&surface), vertices_(surface) {
     const Lattice& lattice = *surface.lattice;
-    double of_vertex = 1;  // the sum of its weights without their signs, at most
-    for (const ContactVertex& vertex : surface.vertices) {
-        double sum = 0;
-        for (const double w : vertex.weights)
-            sum += std::abs(w);
-        of_vertex = std::max(of_vertex, sum);
-    }
     const double of_continued = std::pow(1 + 2 * beyond_domain, 3);
-    of_strain_ = (of_vertex - 1) / 2 + (of_continued - 1) / 2;
+    of_strain_ = (surface.largest_weight_sum - 1) / 2 + (of_continued - 1) / 2;
 
     Vec3 rest_centre = Vec3::Zero();
     for (const Vec3& X : lattice.corner_rest)
@@ -55,7 +45,7 @@ double FoldWatch::change_at_most(const Field& x) {
     return change_seen_
            + (1 + of_strain_)
                  * (moved.farthest(moved) + now_.turn_from(frame_seen_) * wide_seen_)
-           + rounding * surface_->lattice->edge;
+           + LookAhead::rounding * surface_->lattice->edge;
 }
 
 double FoldWatch::see(const Field& x) {
@@ -69,7 +59,7 @@ double FoldWatch::see(const Field& x) {
     frame_seen_ = now_;
     wide_seen_ = all.farthest(all);
     return moved.farthest(moved) + of_strain_ * most_strained()
-           + rounding * surface_->lattice->edge;
+           + LookAhead::rounding * surface_->lattice->edge;
 }
 
 double FoldWatch::most_strained() const {
@@ -96,7 +86,6 @@ void FoldWatch::look(double within) {
     for (const std::vector<Near>& part : parts)
         nearest_.insert(nearest_.end(), part.begin(), part.end());
     looked_at_ = seen_;
-    left_ = within;
 }
 
 void FoldWatch::look_at(int p, double within, std::vector<Near>& near) const {
@@ -134,15 +123,13 @@ bool FoldWatch::is_in(const Near& near, const Field& x) const {
 }
 
 std::vector<int> FoldWatch::strangers(const Field& x) {
-    ++n_asked_;
+    ahead_.count();
     double change = change_at_most(x);
-    if (!(change < left_))
+    if (!ahead_.stands(change))
         change = change_seen_ = see(x);
-    if (!(change < left_)) {
-        const double ahead = watched * surface_->lattice->edge;
-        look(change < n_asked_ * most_used * ahead ? ahead : 0);
+    if (!ahead_.stands(change)) {
+        look(ahead_.renew(change, watched * surface_->lattice->edge));
         change = change_seen_ = 0;
-        n_asked_ = 0;
     }
     std::vector<int> found;
     for (const Near& near : nearest_)

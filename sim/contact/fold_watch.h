@@ -1,6 +1,7 @@
 // Where a body may touch itself.
 #pragma once
 
+#include "sim/contact/look_ahead.h"
 #include "sim/contact/own_frame.h"
 #include "sim/contact/vertex_grid.h"
 
@@ -52,12 +53,11 @@ class FoldWatch {
     Field x_seen_, seen_;
     OwnFrame frame_seen_;
     double wide_seen_ = 0, change_seen_ = 0;
-    // At the last look: corners in the body's own frame (#corners), vertices near a stranger, and the least gap of all
-    // others   [m]
+    // At the last look: corners in the body's own frame (#corners) [m], vertices near a stranger, and how near the others are
+    // not.
     Field looked_at_;
     std::vector<Near> nearest_;
-    double left_ = 0;
-    int n_asked_ = 0;  // since then
+    LookAhead ahead_;
 };
 
 }  // namespace sim

@@ -10,11 +10,6 @@ namespace sim {
 
 namespace {
 
-constexpr double listed_ahead = 0.25;  // in domain edges
-constexpr double most_used =
-    0.3;  // of that from one call to the next; where bodies move by more, nothing is listed ahead
-constexpr double rounding = 1e-9;  // of distances, in domain edges
-
 /// Takes over those domains that any vertex has, of which `nearby` are the places.
 void keep_used(const std::vector<int>& domains, NearDomains& near) {
     std::vector<int> place(domains.size(), -1);
@@ -100,77 +95,6 @@ NearDomains only(const NearDomains& near, std::span<const int> vertices) {
     }
     keep_used(near.domains, result);
     return result;
-}
-
-NearDomainLists::NearDomainLists(std::span<const ContactSurface> bodies)
-    : bodies_(bodies), lists_(bodies.size() * bodies.size()), moved_(bodies.size()) {
-    for (const ContactSurface& body : bodies) {
-        double most = 1;
-        for (const ContactVertex& vertex : body.vertices) {
-            double sum = 0;
-            for (const double w : vertex.weights)
-                sum += std::abs(w);
-            most = std::max(most, sum);
-        }
-        of_vertex_.push_back(most);
-    }
-}
-
-void NearDomainLists::see() {
-    moved_.assign(bodies_.size(), std::nullopt);
-    is_at_look_ = false;
-    ++n_seen_;
-}
-
-const PaddedBounds& NearDomainLists::moved(int b, const Field& x) {
-    if (!moved_[b]) {
-        PaddedBounds& moved = moved_[b].emplace();
-        const int begin = bodies_[b].begin, end = begin + bodies_[b].lattice->n_corners();
-        for (int c = begin; c < end; ++c)
-            moved.add(x[c] - looked_at_[c]);
-    }
-    return *moved_[b];
-}
-
-double NearDomainLists::approach(int a, int b, const Field& x, double beyond) {
-    // A vertex moves in the box of what its corners move, made wider where not all of its weights are positive; the centre
-    // of a domain in that of its own. What is continued moves as a mean of corners and a multiple of what these part
-    // (FoldWatch): its distance from the centre changes by no more than that multiple, and once more, of the size of the box.
-    const double continued =
-        std::pow(1 + 2 * beyond, 3);  // the sum of its weights without their signs
-    const PaddedBounds &of_a = moved(a, x), &of_b = moved(b, x);
-    const Vec3p middle = (of_a.low + of_a.high) / 2,
-                half = of_vertex_[a] * (of_a.high - middle);
-    const PaddedBounds of_vertex{middle - half, middle + half};
-    return of_vertex.farthest(of_b) + (1 + continued) / 2 * of_b.farthest(of_b)
-           + rounding * bodies_[b].lattice->edge;
-}
-
-void NearDomainLists::look(const Field& x, double way) {
-    double edge = std::numeric_limits<double>::infinity();
-    for (const ContactSurface& body : bodies_)
-        edge = std::min(edge, body.lattice->edge);
-    ahead_ = way < n_seen_ * most_used * listed_ahead * edge ? listed_ahead * edge : 0;
-    looked_at_ = x;
-    moved_.assign(bodies_.size(), std::nullopt);
-    n_seen_ = 0;
-    is_at_look_ = true;
-    for (List& list : lists_)
-        list.is_made = false;
-}
-
-const NearDomains& NearDomainLists::near(int a, int b, const Field& x, double beyond) {
-    List& list = lists_[a * bodies_.size() + b];
-    const double way = looked_at_.empty() ? 0 : approach(a, b, x, beyond);
-    if (!(list.is_made && beyond <= list.beyond && way <= ahead_)) {
-        if (!is_at_look_)
-            look(x, way);
-        list.near =
-            near_domains(bodies_[a], bodies_[a].all_vertices(), bodies_[b], x, beyond, ahead_);
-        list.beyond = beyond;
-        list.is_made = true;
-    }
-    return list.near;
 }
 
 }  // namespace sim

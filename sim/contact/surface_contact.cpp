@@ -145,7 +145,6 @@ void SurfaceContact::begin_step(const Start& start, const Field& x_expected, dou
 void SurfaceContact::find(const Field& x) {
     contacts_.clear();
     rows_.clear();
-    near_.see();
     for (std::size_t k = 0; k < pairs_.size(); ++k)
         for (const ContactPoint& point : found(pairs_[k], x))
             contacts_.push_back(prepared(point, static_cast<int>(k)));

@@ -5,7 +5,7 @@
 #include "sim/contact/contact_point.h"
 #include "sim/contact/fold_watch.h"
 #include "sim/contact/grip.h"
-#include "sim/contact/near_domains.h"
+#include "sim/contact/near_domain_lists.h"
 #include "sim/contact/pair_friction.h"
 #include "sim/grid/corner_map.h"
 

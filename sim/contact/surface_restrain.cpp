@@ -84,7 +84,6 @@ bool SurfaceContact::is_linear_enough(const Field& x, double way, double toleran
             return false;
         before.push_back(contact);
     }
-    near_.see();
     for (auto begin = before.begin(); begin != before.end();) {
         const int k = begin->pair;
         const Pair& pair = pairs_[k];
