@@ -34,6 +34,8 @@ struct HeldContact {
 class SurfaceContact : public ContactEnergy {
   public:
     SurfaceContact(std::vector<ContactSurface> bodies, const PairFriction& friction);
+    SurfaceContact(const SurfaceContact&) = delete;  // its parts refer to each other
+    SurfaceContact& operator=(const SurfaceContact&) = delete;
 
     bool empty() const { return bodies_.empty(); }
 
