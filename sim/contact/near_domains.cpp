@@ -1,5 +1,6 @@
 #include "sim/contact/near_domains.h"
 
+#include "sim/base/parallel.h"
 #include "sim/contact/domain_hull.h"
 #include "sim/contact/point_grid.h"
 
@@ -9,6 +10,8 @@
 namespace sim {
 
 namespace {
+
+constexpr int chunk = 256;  // of vertices
 
 /// Takes over those domains that any vertex has, of which `nearby` are the places.
 void keep_used(const std::vector<int>& domains, NearDomains& near) {
@@ -24,6 +27,34 @@ void keep_used(const std::vector<int>& domains, NearDomains& near) {
         i = place[i];
 }
 
+/// Of the domains of a shell whose balls, made larger by `ahead`, reach into a region.
+struct Balls {
+    std::vector<int> domains;
+    std::vector<Ball> balls;
+    std::vector<Vec3> centres;
+    double largest = 0;  // of their radii [m]
+
+    Balls(const ContactSurface& body,
+          const Bounds& region,
+          const Field& x,
+          double beyond,
+          double ahead) {
+        for (const int p : body.shell) {
+            std::array<Vec3p, 8> corners = body.domain_corners(p, x);
+            go_beyond(beyond, corners);
+            Ball ball(corners);
+            const double radius = std::sqrt(ball.squared_radius) + ahead;
+            if (!region.contains(unpadded(ball.centre), radius))
+                continue;
+            ball.squared_radius = radius * radius;
+            domains.push_back(p);
+            balls.push_back(ball);
+            centres.push_back(unpadded(ball.centre));
+            largest = std::max(largest, radius);
+        }
+    }
+};
+
 }  // namespace
 
 NearDomains near_domains(const ContactSurface& of_vertices,
@@ -32,49 +63,37 @@ NearDomains near_domains(const ContactSurface& of_vertices,
                          const Field& x,
                          double beyond,
                          double ahead) {
-    NearDomains near;
-    if (vertices.empty())
-        return near;
     std::vector<Vec3> points;
     Bounds region;
     for (const int v : vertices) {
         points.push_back(of_vertices.vertices[v].position(x));
         region.add(points.back());
     }
-    // Balls of the shell that reach there.
-    std::vector<int> domains;
-    std::vector<Ball> balls;
-    std::vector<Vec3> centres;
-    double largest = 0;
-    for (const int p : of_domains.shell) {
-        std::array<Vec3p, 8> corners = of_domains.domain_corners(p, x);
-        go_beyond(beyond, corners);
-        Ball ball(corners);
-        const double radius = std::sqrt(ball.squared_radius) + ahead;
-        if (!region.contains(unpadded(ball.centre), radius))
-            continue;
-        ball.squared_radius = radius * radius;
-        domains.push_back(p);
-        balls.push_back(ball);
-        centres.push_back(unpadded(ball.centre));
-        largest = std::max(largest, radius);
-    }
-    if (domains.empty())
+    const Balls all(of_domains, region, x, beyond, ahead);
+    NearDomains near;
+    if (all.domains.empty())
         return near;
-    const PointGrid grid(centres, largest);
-    for (std::size_t k = 0; k < points.size(); ++k) {
-        const std::size_t begin = near.nearby.size();
-        grid.near(points[k], [&](int i) {
-            if (balls[i].holds(padded(points[k])))
-                near.nearby.push_back(i);
-        });
-        if (near.nearby.size() == begin)
-            continue;
-        std::sort(near.nearby.begin() + static_cast<std::ptrdiff_t>(begin), near.nearby.end());
-        near.vertices.push_back(vertices[k]);
-        near.first.push_back(static_cast<int>(near.nearby.size()));
-    }
-    keep_used(domains, near);
+    // Vertices in chunks of a fixed size, in order.
+    const PointGrid grid(all.centres, all.largest);
+    const int n = static_cast<int>(points.size());
+    std::vector<NearDomains> parts((n + chunk - 1) / chunk);
+    for_chunks(n, chunk, [&](int begin, int end) {
+        std::vector<int> places;
+        for (int k = begin; k < end; ++k) {
+            places.clear();
+            grid.near(points[k], [&](int i) {
+                if (all.balls[i].holds(padded(points[k])))
+                    places.push_back(i);
+            });
+            std::sort(places.begin(), places.end());
+            if (!places.empty())
+                parts[begin / chunk].add(vertices[k], places);
+        }
+    });
+    for (const NearDomains& part : parts)
+        for (std::size_t k = 0; k < part.vertices.size(); ++k)
+            near.add(part.vertices[k], part.of_vertex(k));
+    keep_used(all.domains, near);
     return near;
 }
 
@@ -88,10 +107,7 @@ NearDomains only(const NearDomains& near, std::span<const int> vertices) {
             break;
         if (near.vertices[k] != v)
             continue;
-        const std::span<const int> nearby = near.of_vertex(k);
-        result.nearby.insert(result.nearby.end(), nearby.begin(), nearby.end());
-        result.vertices.push_back(v);
-        result.first.push_back(static_cast<int>(result.nearby.size()));
+        result.add(v, near.of_vertex(k));
     }
     keep_used(near.domains, result);
     return result;

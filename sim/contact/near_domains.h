@@ -17,6 +17,12 @@ struct NearDomains {
     std::span<const int> of_vertex(std::size_t k) const {
         return {nearby.data() + first[k], nearby.data() + first[k + 1]};
     }
+
+    void add(int vertex, std::span<const int> places) {
+        vertices.push_back(vertex);
+        nearby.insert(nearby.end(), places.begin(), places.end());
+        first.push_back(static_cast<int>(nearby.size()));
+    }
 };
 
 /// Of `vertices`, ascending, at x (#C): domains whose balls, of what their maps are continued to by the share `beyond` of a
