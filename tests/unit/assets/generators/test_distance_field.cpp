@@ -5,11 +5,33 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <limits>
 
 using assets::DistanceField;
 
 namespace {
+
+/// No distance at all: every value counts.
+struct Rough : assets::Solid {
+    Rough() { max = Vec3(1, 0.8, 0.6); }
+
+    double signed_distance(const Vec3& x) const override {
+        return std::sin(40 * x.x() + 3) * std::cos(50 * x.y()) + std::sin(60 * x.z() * x.x());
+    }
+};
+
+/// The quadratic B-spline around 0, of unit knots, and its slope.
+double spline(double t) {
+    t = std::abs(t);
+    return t < 0.5 ? 0.75 - t * t : t < 1.5 ? (1.5 - t) * (1.5 - t) / 2 : 0;
+}
+
+double slope(double t) {
+    return std::abs(t) < 0.5   ? -2 * t
+           : std::abs(t) < 1.5 ? (std::abs(t) - 1.5) * (t > 0 ? 1 : -1)
+                               : 0;
+}
 
 constexpr double voxel = 0.05;
 
@@ -37,6 +59,34 @@ TEST_CASE(
             2 / 0.3 * voxel * voxel / 8;  // both principal curvatures, at radius 0.3 and more
         CHECK(std::abs(sphere.at(ball.center + 0.35 * n, gradient) + 0.05) < most);
         CHECK((gradient - n).norm() < 0.02);
+    }
+}
+
+TEST_CASE("values and gradients are the sum of products of splines over all of the grid") {
+    const Rough solid;
+    const DistanceField field(solid, voxel);
+    const Vec3 low = Vec3::Constant(-2 * voxel);
+    tests::Random random(6);
+    for (int repeat = 0; repeat < 20; ++repeat) {
+        const Vec3 x(tests::between(random, 0, 1),
+                     tests::between(random, 0, 0.8),
+                     tests::between(random, 0, 0.6));
+        double value = 0;
+        Vec3 expected = Vec3::Zero(), gradient;
+        for (int k = 0; k < 18; ++k)
+            for (int j = 0; j < 22; ++j)
+                for (int i = 0; i < 26; ++i) {
+                    const Vec3 node(i, j, k), t = (x - low) / voxel - node,
+                                              w = t.unaryExpr(&spline), d = t.unaryExpr(&slope);
+                    const double there =
+                        static_cast<float>(solid.signed_distance(low + voxel * node));
+                    value += there * w.prod();
+                    expected +=
+                        there / voxel
+                        * Vec3(d[0] * w[1] * w[2], w[0] * d[1] * w[2], w[0] * w[1] * d[2]);
+                }
+        CHECK(field.at(x, gradient) == Approx(value).margin(1e-12));
+        CHECK((gradient - expected).norm() < 1e-12 / voxel);
     }
 }
 
