@@ -39,9 +39,11 @@ struct Side {
 
 struct Node {
     std::array<Side, 2> side;
-    std::array<Vec3, n_normals> normals;  // from the first body to the second
-    std::array<Vec3p, 3> along;           // entry n of along[k]: component k of normal n
+    std::array<Vec3p, 3>
+        normals;  // out of the first body: entry n of [k] is component k of the n-th
     std::array<Vec3p, 2> dv{};
+
+    Vec3 normal(int n) const { return {normals[0][n], normals[1][n], normals[2][n]}; }
 };
 
 PaddedBounds bounds_of(const ContactBody& body, const Field& x) {
@@ -113,7 +115,7 @@ class GridContact::Pair {
                 side.momentum += weight * fields_.mass[c][0] * velocity[c];
                 const Vec3p x = fields_.x[c] + dt * velocity[c];
                 const Vec3p along =
-                    node.along[0] * x[0] + node.along[1] * x[1] + node.along[2] * x[2];
+                    node.normals[0] * x[0] + node.normals[1] * x[1] + node.normals[2] * x[2];
                 side.reach = larger(side.reach, outward * along - fields_.outside[c]);
             }
         }
@@ -198,12 +200,12 @@ class GridContact::Pair {
         const auto& [a, b] = node.side;
         const Vec3 out_of_first = unpadded(a.gradient) / a.volume,
                    into_second = -unpadded(b.gradient) / b.volume;
-        node.normals = {out_of_first + into_second, out_of_first, into_second};
+        const std::array<Vec3, n_normals> normals{
+            out_of_first + into_second, out_of_first, into_second};
         for (int n = 0; n < n_normals; ++n) {
-            Vec3& normal = node.normals[n];
-            normal = normal.norm() > 0 ? normal.normalized() : Vec3::Zero();
+            const Vec3 normal = normals[n].norm() > 0 ? normals[n].normalized() : Vec3::Zero();
             for (int k = 0; k < 3; ++k)
-                node.along[k][n] = normal[k];
+                node.normals[k][n] = normal[k];
         }
     }
 
@@ -213,7 +215,7 @@ class GridContact::Pair {
         Vec3 best = Vec3::Zero();
         double least = infinity;
         for (int n = 0; n < n_normals; ++n) {
-            const double turn = node.normals[n].dot(node.normals[0]);
+            const double turn = node.normal(n).dot(node.normal(0));
             const double overlap = node.side[0].reach[n] + node.side[1].reach[n];
             if (!(turn > 0))
                 continue;
@@ -223,7 +225,7 @@ class GridContact::Pair {
             if (compared >= least)
                 continue;
             least = compared;
-            best = node.normals[n];
+            best = node.normal(n);
         }
         return best;
     }

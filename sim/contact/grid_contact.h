@@ -32,7 +32,8 @@ struct ContactFields {
 /// All corners of a pair, free ones too, deposit mass and momentum on a grid. At a node where two bodies are
 /// present, approach each other, and overlap along the normal by the end of the step (largest n·x of the one against
 /// smallest of the other), they exchange the impulse m1 m2 / (m1 + m2) times the approach, with Coulomb friction; each
-/// corner gets Σ_i w_i dv_i back, so that momentum is exact. Repeated `contact_sweeps` times, pair after pair.
+/// corner gets Σ_i w_i dv_i back, so that momentum is exact. Pair after pair, up to `contact_sweeps` times or until
+/// nothing meets.
 ///
 /// The normal is that of g1/V1 - g2/V2, with V = Σ_c V_c w_ic of a body and g its gradient, by quadratic splines; or of g1 or
 /// -g2 alone where along it the bodies overlap by much less. At the rim of one body the mean leans: a block that slides would

@@ -3,6 +3,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <functional>
+
 using sim::Field;
 using sim::Vec3p;
 
@@ -33,12 +36,16 @@ struct Cubes {
             }
     }
 
-    void exchange(const sim::Friction& friction) {
+    sim::GridContact contact(const sim::Friction& friction) const {
         std::vector<sim::GridPair> pairs;
         for (std::size_t i = 0; i < bodies.size(); ++i)
             for (std::size_t j = i + 1; j < bodies.size(); ++j)
                 pairs.push_back({bodies[i], bodies[j], s, friction});
-        sim::GridContact(pairs, {x, mass, volume, outside, is_free}).exchange(dt, velocity);
+        return {pairs, {x, mass, volume, outside, is_free}};
+    }
+
+    bool exchange(const sim::Friction& friction) {
+        return contact(friction).exchange(dt, velocity);
     }
 
     Vec3 momentum(int b) const {
@@ -87,8 +94,9 @@ TEST_CASE("bodies that stay apart, or part, are left alone") {
     const double closing = 2 * dt;  // of 2 m/s in a step [m]
     const auto changes = [](Cubes cubes) {
         const Field before = cubes.velocity;
-        cubes.exchange({true, 0});
-        return !cubes.unchanged_from(before);
+        const bool has_met = cubes.exchange({true, 0});
+        CHECK(has_met == !cubes.unchanged_from(before));
+        return has_met;
     };
     CHECK(changes({0.5 * closing, {2, 0, 0}, {0, 0, 0}}));
     CHECK(!changes({1.5 * closing, {2, 0, 0}, {0, 0, 0}}));  // they do not meet within the step
@@ -176,6 +184,33 @@ TEST_CASE("prescribed components keep their velocity") {
     cubes.exchange({false, 0});
     for (std::size_t c = 0; c < before.size(); ++c)
         CHECK(cubes.velocity[c][0] == before[c][0]);
+}
+
+TEST_CASE("the corners that an exchange may change are each listed once, in order") {
+    // The other two cubes meet in the one on the right.
+    Cubes cubes(-0.02 * s, {2, 0, 0}, {0, 0, 0});
+    const int end = 2 * n * n * n;
+    for (int c = 0; c < n * n * n; ++c) {
+        cubes.x.push_back(cubes.x[c] + Vec3p{(n - 1) * s, (n - 1.02) * s, 0, 0});
+        cubes.mass.push_back(cubes.mass[c]);
+        cubes.velocity.push_back(Vec3p{0, -2, 0, 0});
+        cubes.is_free.push_back(cubes.is_free[c]);
+        cubes.volume.push_back(s * s * s);
+        cubes.outside.push_back(0);
+    }
+    cubes.bodies.push_back({end, end + n * n * n});
+    const std::vector<int> corners = cubes.contact({}).corners();
+    CHECK(std::ranges::adjacent_find(corners, std::greater_equal<>()) == corners.end());
+    CHECK(corners.size() < cubes.x.size());
+    const Field before = cubes.velocity;
+    REQUIRE(cubes.exchange({}));
+    int n_changed = 0;
+    for (int c = 0; c < static_cast<int>(cubes.x.size()); ++c)
+        if (sim::dot(cubes.velocity[c] - before[c], cubes.velocity[c] - before[c]) > 0) {
+            CHECK(std::ranges::binary_search(corners, c));
+            ++n_changed;
+        }
+    CHECK(n_changed > 2 * n * n);
 }
 
 TEST_CASE("each pair of several bodies meets, and none is fine too") {
