@@ -1,6 +1,7 @@
 #include "sim/incremental_potential.h"
 
 #include "sim/base/parallel.h"
+#include "sim/base/vectors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,16 +16,13 @@ constexpr double rounding =
     1e-14;  // of a position after the sums of a step, relative to the largest coordinate
 
 /// Of all vectors, disregarding signs.
-double largest_entry(const Field& field) {
+double largest_magnitude(const Field& field) {
     Vec3p low{}, high{};
     for (const Vec3p& v : field) {
-        low = v < low ? v : low;
-        high = v > high ? v : high;
+        low = smaller(v, low);
+        high = larger(v, high);
     }
-    double largest = 0;
-    for (int k = 0; k < 3; ++k)
-        largest = std::max({largest, -low[k], high[k]});
-    return largest;
+    return largest_entry(larger(-low, high));
 }
 
 }  // namespace
@@ -94,7 +92,7 @@ void IncrementalPotential::linearize(const Field& q, bool project) {
         elasticity.linearize(&x_[begin], project);
         elasticity.diagonal(&corner_diagonal_[begin]);
     });
-    const double largest_coordinate = largest_entry(x_);
+    const double largest_coordinate = largest_magnitude(x_);
     for (ContactEnergy* contact : contacts_) {
         contact->linearize(x_);
         contact->add_diagonal(corner_diagonal_);

@@ -1,7 +1,7 @@
 // The rigid motion that carries a body's momentum.
 #pragma once
 
-#include "sim/base/field.h"
+#include "sim/base/vectors.h"
 
 namespace sim {
 
@@ -9,14 +9,7 @@ namespace sim {
 struct RigidMotion {
     Vec3p centre{}, velocity{}, spin{};
 
-    Vec3p at(const Vec3p& x) const {
-        const Vec3p r = x - centre;
-        return velocity
-               + Vec3p{spin[1] * r[2] - spin[2] * r[1],
-                       spin[2] * r[0] - spin[0] * r[2],
-                       spin[0] * r[1] - spin[1] * r[0],
-                       0};
-    }
+    Vec3p at(const Vec3p& x) const { return velocity + cross(spin, x - centre); }
 };
 
 /// The one with the linear and angular momentum of the masses m at x moving with v, over corners [begin, end).

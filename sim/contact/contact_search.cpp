@@ -27,7 +27,7 @@ struct Candidate {
     int domain = 0;
     Ball ball;  // of what it is continued to
     DomainMap map;
-    Gradient3 at_centre;
+    PaddedMatrix at_centre;
     double bend = 0;  // DomainMap::bend, as far as it is continued
 };
 
@@ -46,7 +46,7 @@ struct Plane {
 };
 
 double outside_of_cube(const Vec3p& u) {
-    return std::max(0.0, largest_entry(larger(u, -u)) - 0.5);
+    return std::max(0.0, largest_entry(magnitude(u)) - 0.5);
 }
 
 class Search {
@@ -86,7 +86,7 @@ class Search {
     Candidate candidate(int p) const {
         std::array<Vec3p, 8> corners = b_.domain_corners(p, x_);
         const DomainMap map(corners);
-        const Gradient3 at_centre = map.gradient_at_centre();
+        const PaddedMatrix at_centre = map.gradient_at_centre();
         go_beyond(beyond_, corners);
         return {p, Ball(corners), map, at_centre, map.bend(at_centre, 0.5 + beyond_)};
     }
@@ -194,7 +194,7 @@ class Search {
                        ContactPoint& contact) const {
         const Plane plane = met_plane(vertex, place, rest_point(place.domain, place.u));
         const double edge = b_.lattice->edge;
-        const Gradient3 gradient = place.map->gradient(place.u);  // edge F
+        const PaddedMatrix gradient = place.map->gradient(place.u);  // edge F
         if (!(gradient.determinant > 0) || !(plane.normal.norm() > least_gradient))
             return false;
         const Vec3 n =

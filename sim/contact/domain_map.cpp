@@ -1,7 +1,5 @@
 #include "sim/contact/domain_map.h"
 
-#include "sim/contact/padded_bounds.h"
-
 namespace sim {
 
 namespace {
@@ -11,13 +9,9 @@ constexpr double enough = 1e-12;  // of a step in u
 constexpr double close = 1e-6;    // of the last one, which leaves about its square
 constexpr double farthest = 3.5;  // u where the domain has been left for good
 
-Vec3p magnitude(const Vec3p& v) {
-    return larger(v, -v);
-}
-
 }  // namespace
 
-double DomainMap::bend(const Gradient3& at_centre, double most) const {
+double DomainMap::bend(const PaddedMatrix& at_centre, double most) const {
     Vec3p sum{};
     for (const int of_two : {3, 5, 6})
         sum += magnitude(at_centre.solve(x_[of_two]));
@@ -28,7 +22,7 @@ double DomainMap::bend(const Gradient3& at_centre, double most) const {
 bool DomainMap::invert(const Vec3p& point, Vec3p& u) const {
     double squared = 0;  // of a step
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
-        const Gradient3 slope = gradient(u);
+        const PaddedMatrix slope = gradient(u);
         if (!(slope.determinant > 0))
             return false;
         const Vec3p step = slope.solve(point - at(u));

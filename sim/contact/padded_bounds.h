@@ -1,25 +1,12 @@
 // Boxes along the axes around points of fields.
 #pragma once
 
-#include "sim/base/field.h"
+#include "sim/base/vectors.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace sim {
-
-inline Vec3p smaller(const Vec3p& a, const Vec3p& b) {
-    return a < b ? a : b;
-}
-
-inline Vec3p larger(const Vec3p& a, const Vec3p& b) {
-    return a > b ? a : b;
-}
-
-inline double largest_entry(const Vec3p& a) {
-    return std::max({a[0], a[1], a[2]});
-}
 
 /// Along the axes; empty before the first point.
 struct PaddedBounds {

@@ -54,7 +54,7 @@ TEST_CASE("a domain's map and gradient are those of trilinear weights, and are i
         CHECK((sim::unpadded(map.at(sim::padded(u))) - x).norm() < 1e-14 * far_off.norm());
 
         const Mat3 expected = sim::trilinear_gradient(u + Vec3::Constant(0.5), 1, corners);
-        const sim::Gradient3 gradient = map.gradient(sim::padded(u));
+        const sim::PaddedMatrix gradient = map.gradient(sim::padded(u));
         CHECK(gradient.determinant == Approx(expected.determinant()));
         CHECK((expected * sim::unpadded(gradient.solve(sim::padded(v))) - v).norm() < 1e-12);
         CHECK((expected.transpose() * sim::unpadded(gradient.solve_transposed(sim::padded(v)))
@@ -75,7 +75,7 @@ TEST_CASE("the linear part of a domain's map errs by no more than its bend") {
         const double most = k % 2 == 0 ? 0.5 : 0.75;
         const std::array<Vec3, 8> corners = bent_cube(random, 0.1);
         const sim::DomainMap map = map_of(corners);
-        const sim::Gradient3 at_centre = map.gradient_at_centre();
+        const sim::PaddedMatrix at_centre = map.gradient_at_centre();
         const double bend = map.bend(at_centre, most);
         for (int corner = 0; corner < 8; ++corner)  // where what is bilinear is largest
             for (const double share : {1.0, 0.7}) {
