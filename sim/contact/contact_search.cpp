@@ -6,8 +6,6 @@
 #include "sim/contact/domain_map.h"
 #include "sim/embedding/trilinear.h"
 
-#include <Eigen/LU>
-
 #include <cmath>
 
 namespace sim {
@@ -22,7 +20,8 @@ constexpr double least_gradient =
 constexpr double seam =
     1e-3;  // beyond a domain where rounding may put what is in its neighbour, in domain edges
 
-/// A deformed domain, and the linear part of the map from the world to its cube.
+/// A deformed domain. The gradient at its centre, of the map from its cube to the world, solves for the linear part of the way
+/// back.
 struct Candidate {
     int domain = 0;
     Ball ball;  // of what it is continued to
@@ -115,11 +114,12 @@ class Search {
                 || !candidate.map.invert(point, u))
                 continue;
             const double outside = outside_of_cube(u);
-            if (outside > beyond_ || outside > best.outside
-                || (outside == best.outside && candidate.domain > best.domain)
+            if (outside > beyond_ || outside >= best.outside
                 || is_in_another(candidate.domain, u, 0))
                 continue;
             best = {candidate.domain, u, outside, &candidate.map};
+            if (outside == 0)
+                break;  // of those that hold it, the first
         }
         return best;
     }
@@ -173,14 +173,13 @@ class Search {
     /// Along the surface's outer normal at a vertex today, F^-T grad phi. Where a body is crushed, a vertex also nears
     /// places of its own side: only what faces it can be met.
     Vec3 outward(const ContactVertex& vertex) const {
-        std::array<Vec3, 8> at;
+        std::array<Vec3p, 8> at;
         for (int a = 0; a < 8; ++a)
-            at[a] = unpadded(x_[vertex.corners[a]]);
-        const Mat3 F =
-            trilinear_gradient(local_coordinates(vertex.weights), a_.lattice->edge, at);
+            at[a] = x_[vertex.corners[a]];
+        const Vec3 u = local_coordinates(vertex.weights) - Vec3::Constant(0.5);
         Vec3 gradient;
         a_.distance.at(vertex.rest, gradient);
-        return F.inverse().transpose() * gradient;
+        return unpadded(DomainMap(at).gradient(padded(u)).solve_transposed(padded(gradient)));
     }
 
     Plane plane_at(const Vec3& X) const {

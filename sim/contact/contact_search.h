@@ -33,6 +33,4 @@ std::vector<ContactPoint> find_listed_contacts(const ContactSurface& of_vertices
                                                const Field& x_n,
                                                double margin);
 
-constexpr double neighbourhood = 2.5;
-
 }  // namespace sim

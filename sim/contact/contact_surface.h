@@ -50,6 +50,9 @@ struct Bounds {
     }
 };
 
+/// Of a body with itself domains this near a vertex at rest are left out, in domain edges.
+constexpr double neighbourhood = 2.5;
+
 struct ContactSurface {
     /// Corners of the body begin at `first_corner` in the field of all corners. `lattice` outlives the surface. The
     /// vertices are about two per domain edge, those of the mesh first, so that they keep its corners.

@@ -1,7 +1,6 @@
 #include "sim/contact/fold_watch.h"
 
 #include "sim/base/parallel.h"
-#include "sim/contact/contact_search.h"
 #include "sim/contact/domain_hull.h"
 
 #include <algorithm>

@@ -9,7 +9,7 @@
 
 namespace sim {
 
-/// Tells cheaply which vertices of a body may be in a domain that is no neighbour at rest (contact_search.h), or a quarter
+/// Tells cheaply which vertices of a body may be in a domain that is no neighbour at rest (neighbourhood), or a quarter
 /// of a domain beyond it. However flat a domain is pressed, it reaches no further: layers that lie close to each other
 /// because what is between them is thin do not count.
 ///
