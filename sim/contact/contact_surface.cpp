@@ -137,14 +137,4 @@ std::vector<int> ContactSurface::all_vertices() const {
     return indices;
 }
 
-Bounds ContactSurface::bounds(const Field& x) const {
-    Vec3p low = x[begin], high = low;
-    for (int c = 1; c < lattice->n_corners(); ++c) {
-        const Vec3p at = x[begin + c];
-        low = at < low ? at : low;
-        high = at > high ? at : high;
-    }
-    return {unpadded(low), unpadded(high)};
-}
-
 }  // namespace sim

@@ -7,7 +7,6 @@
 #include "sim/lattice/lattice.h"
 
 #include <array>
-#include <limits>
 #include <vector>
 
 namespace sim {
@@ -30,24 +29,6 @@ struct ContactVertex {
     }
 
     Vec3 position(const Field& x) const { return unpadded(padded_position(x)); }
-};
-
-/// A box along the axes; empty before the first point.
-struct Bounds {
-    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-
-    void add(const Vec3& x) {
-        low = low.cwiseMin(x);
-        high = high.cwiseMax(x);
-    }
-
-    bool contains(const Vec3& x, double margin) const {
-        return ((x - low).array() >= -margin).all() && ((high - x).array() >= -margin).all();
-    }
-
-    double distance(const Bounds& other) const {
-        return (other.low - high).cwiseMax(low - other.high).cwiseMax(0.0).norm();
-    }
 };
 
 /// Of a body with itself domains this near a vertex at rest are left out, in domain edges.
@@ -73,7 +54,6 @@ struct ContactSurface {
 
     /// Now, from the field of all corners x.   (8) [m]
     std::array<Vec3p, 8> domain_corners(int p, const Field& x) const;
-    Bounds bounds(const Field& x) const;
 
     std::vector<int> all_vertices() const;  // 0, 1, 2...
 };

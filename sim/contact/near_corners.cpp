@@ -25,10 +25,6 @@ double way_seen(const Pose& from, const Pose& to, const PaddedBounds& bounds) {
     return longest;
 }
 
-PaddedBounds widened(const PaddedBounds& bounds, double by) {
-    return {bounds.low - by, bounds.high + by};
-}
-
 }  // namespace
 
 NearCorners::NearCorners(std::vector<int> corners, std::size_t n_colliders, double margin)
@@ -69,7 +65,7 @@ void NearCorners::begin_step(const Field& x,
     for (int j = 0; j < n_colliders; ++j)
         free_way_ = std::min(free_way_,
                              least_gap(j, way, from[j]) / steepest_distance
-                                 - way_seen(from[j], to[j], widened(bounds_, way)));
+                                 - way_seen(from[j], to[j], bounds_.widened(way)));
 }
 
 void NearCorners::look(double way, const std::vector<Pose>& poses, const Gap& gap) {
@@ -107,7 +103,7 @@ const std::vector<int>& NearCorners::reaching(
     int j, const Field& x, const Field& v, double dt, const Pose& from, const Pose& to) const {
     const double way = way_since_look(x);
     const double reach = farthest([&](int k) { return dt * v[corners_[k]]; })
-                         + way_seen(from, to, widened(bounds_, way));
+                         + way_seen(from, to, bounds_.widened(way));
     return least_gap(j, way, from) > reach ? near_ : all_;
 }
 

@@ -2,6 +2,7 @@
 
 #include "sim/base/parallel.h"
 #include "sim/contact/domain_hull.h"
+#include "sim/contact/padded_bounds.h"
 #include "sim/contact/point_grid.h"
 
 #include <algorithm>
@@ -35,7 +36,7 @@ struct Balls {
     double largest = 0;  // of their radii [m]
 
     Balls(const ContactSurface& body,
-          const Bounds& region,
+          const PaddedBounds& region,
           const Field& x,
           double beyond,
           double ahead) {
@@ -44,7 +45,7 @@ struct Balls {
             go_beyond(beyond, corners);
             Ball ball(corners);
             const double radius = std::sqrt(ball.squared_radius) + ahead;
-            if (!region.contains(unpadded(ball.centre), radius))
+            if (!region.widened(radius).holds(ball.centre))
                 continue;
             ball.squared_radius = radius * radius;
             domains.push_back(p);
@@ -64,10 +65,10 @@ NearDomains near_domains(const ContactSurface& of_vertices,
                          double beyond,
                          double ahead) {
     std::vector<Vec3> points;
-    Bounds region;
+    PaddedBounds region;
     for (const int v : vertices) {
         points.push_back(of_vertices.vertices[v].position(x));
-        region.add(points.back());
+        region.add(padded(points.back()));
     }
     const Balls all(of_domains, region, x, beyond, ahead);
     NearDomains near;

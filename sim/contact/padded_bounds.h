@@ -19,11 +19,18 @@ struct PaddedBounds {
 
     bool is_empty() const { return largest_entry(low - high) > 0; }
 
+    PaddedBounds widened(double by) const { return {low - by, high + by}; }
+
     bool holds(const Vec3p& x) const { return largest_entry(larger(low - x, x - high)) <= 0; }
 
     /// Along the axis in which they are furthest apart; below zero where they overlap in all.
     double gap(const PaddedBounds& other) const {
         return largest_entry(larger(other.low - high, low - other.high));
+    }
+
+    double distance(const PaddedBounds& other) const {
+        const Vec3p apart = larger(larger(other.low - high, low - other.high), Vec3p{});
+        return std::sqrt(dot(apart, apart));
     }
 
     void add(const PaddedBounds& other) {

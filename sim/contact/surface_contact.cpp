@@ -2,7 +2,6 @@
 
 #include "sim/base/parallel.h"
 #include "sim/contact/contact_search.h"
-#include "sim/contact/padded_bounds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,15 +44,14 @@ std::vector<SurfaceContact::Extent> SurfaceContact::extents(const Field& x,
     for_chunks(static_cast<int>(bodies_.size()), 1, [&](int b, int /*end*/) {
         const int begin = bodies_[b].begin, end = begin + bodies_[b].lattice->n_corners();
         Extent& extent = result[b];
-        PaddedBounds places, velocities;
+        PaddedBounds velocities;
         Vec3p sum{};
         for (int c = begin; c < end; ++c) {
-            places.add(x[c]);
+            extent.bounds.add(x[c]);
             velocities.add(v[c]);
             sum += v[c];
         }
         const Vec3p mean = sum / double(end - begin);
-        extent.bounds = {unpadded(places.low), unpadded(places.high)};
         extent.velocity = unpadded(mean);
         extent.most_spread = (1 + rounding) * velocities.farthest({mean, mean});
     });

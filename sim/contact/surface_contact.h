@@ -6,6 +6,7 @@
 #include "sim/contact/fold_watch.h"
 #include "sim/contact/grip.h"
 #include "sim/contact/near_domain_lists.h"
+#include "sim/contact/padded_bounds.h"
 #include "sim/contact/pair_friction.h"
 #include "sim/grid/corner_map.h"
 
@@ -118,7 +119,7 @@ class SurfaceContact : public ContactEnergy {
 
     /// Where a body is and how it moves.
     struct Extent {
-        Bounds bounds;
+        PaddedBounds bounds;
         Vec3 velocity{0, 0, 0};  // mean of the corners [m/s]
         double most_spread = 0;  // at least `spread`, from a box around the velocities [m/s]
         std::optional<double> spread =
