@@ -23,8 +23,6 @@ class LookAhead {
         return ahead_;
     }
 
-    double ahead() const { return ahead_; }
-
   private:
     static constexpr double most_used = 0.3;  // of what is ahead, in one use
 
