@@ -64,6 +64,8 @@ NearDomains near_domains(const ContactSurface& of_vertices,
                          const Field& x,
                          double beyond,
                          double ahead) {
+    if (vertices.empty())
+        return {};
     std::vector<Vec3> points;
     PaddedBounds region;
     for (const int v : vertices) {
