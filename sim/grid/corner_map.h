@@ -166,6 +166,15 @@ class CornerMap {
     void visit_slaves(const Field& q, const Write& write) const;
     template <class Write>
     void visit_corners(const Field& q, const Write& write) const;
+
+    // corner_map_transposed.cpp
+    template <bool squared>
+    void gather_linear(const Part& part,
+                       const Group& group,
+                       const int* nodes,
+                       const std::vector<char>* counts,
+                       const Field& f,
+                       Shares& shares) const;
     template <class S, bool squared>
     void gather(const Part& part,
                 const std::vector<char>* counts,
@@ -178,9 +187,13 @@ class CornerMap {
                       const std::vector<char>* counts,
                       const Field& f,
                       Field& q) const;
+
+    // corner_map_gradients.cpp
     template <class S>
     void pass(
         const Part& part, Factor factor, const Field* q, const AtSlaves& f, Field* sums) const;
+
+    // group_sums.h
     template <class Sum>
     void sum_groups(const Part& part, int per_group, const Sum& sum, Field& sums) const;
 

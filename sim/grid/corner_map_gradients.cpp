@@ -1,0 +1,179 @@
+// G q and Gᵀ A: gradients at slaves.
+#include "sim/grid/corner_map.h"
+#include "sim/grid/group_sums.h"
+#include "sim/grid/kernel.h"
+
+#include <algorithm>
+
+namespace sim {
+
+namespace {
+
+constexpr double least_moment =
+    1e-6;  // in cells squared: a linear spline has none on its nodes
+
+/// The factors of a slave's stencil in one axis after the other, w of T and d of ∂w: see CornerMap::Factor.
+template <class S>
+struct Factors {
+    Vec3p w[S::n], d[S::n];
+
+    Factors() = default;
+
+    Factors(CornerMap::Factor factor, const Vec3p& t, double cell_size) {
+        S::weights(t, w);
+        if (factor == CornerMap::Factor::Moment) {
+            for (int a = 0; a < S::n; ++a)
+                d[a] = w[a] * (a - t) * cell_size;
+            return;
+        }
+        S::slopes(t, d);
+        for (int a = 0; a < S::n; ++a)
+            d[a] *= 1 / cell_size;
+        if (factor == CornerMap::Factor::SlopeSquared)
+            for (int a = 0; a < S::n; ++a) {
+                w[a] *= w[a];
+                d[a] *= d[a];
+            }
+    }
+};
+
+/// Σ_i v_i ∂w_i, summed along x, then y, then z.
+template <class S>
+[[gnu::always_inline]] inline Gradient gradient_at(const Factors<S>& at, const Vec3p* v) {
+    constexpr int n = S::n;
+    Gradient sum{};
+#pragma GCC unroll 4
+    for (int c = 0; c < n; ++c) {
+        Vec3p plane[3] = {};
+#pragma GCC unroll 4
+        for (int b = 0; b < n; ++b, v += n) {
+            const Vec3p row = row_sum<n>(at.w, v), slope = row_sum<n>(at.d, v);
+            plane[0] += at.w[b][1] * slope;
+            plane[1] += at.d[b][1] * row;
+            plane[2] += at.w[b][1] * row;
+        }
+        sum.column[0] += at.w[c][2] * plane[0];
+        sum.column[1] += at.w[c][2] * plane[1];
+        sum.column[2] += at.d[c][2] * plane[2];
+    }
+    return sum;
+}
+
+/// Adds A ∂w to the nodes of rows [first, first + rows) of plane c of a stencil.
+template <class S, int rows>
+[[gnu::always_inline]] inline void add_to_rows(
+    const Factors<S>& at, int c, int first, const Gradient& A, Vec3p* sum) {
+    constexpr int n = S::n;
+    const Vec3p x = at.w[c][2] * A.column[0], y = at.w[c][2] * A.column[1],
+                z = at.d[c][2] * A.column[2];
+#pragma GCC unroll 4
+    for (int b = 0; b < rows; ++b) {
+        const double w = at.w[first + b][1], d = at.d[first + b][1];
+        const Vec3p along = w * x, across = d * y + w * z;
+#pragma GCC unroll 4
+        for (int a = 0; a < n; ++a)
+            sum[n * b + a] += at.d[a][0] * along + at.w[a][0] * across;
+    }
+}
+
+}  // namespace
+
+template <class S>
+void CornerMap::pass(
+    const Part& part, Factor factor, const Field* q, const AtSlaves& f, Field* sums) const {
+    constexpr int n = S::n, per_group = n * n * n;
+    constexpr int rows = n == 4 ? 2 : n;  // summed at once, so that the sums live in registers
+    const Group* groups = groups_.data() + part.first_group;
+    const int* group_nodes = group_nodes_.data() + part.first_entry;
+
+    // Blocks of a few groups after each other, so that all that belongs to their slaves stays in the cache.
+    const auto pass_block = [&](int begin, int end, Shares* shares) {
+        thread_local std::vector<Factors<S>> factors;
+        thread_local std::vector<Gradient> values;
+        const int first = groups[begin].begin, last = groups[end - 1].end;
+        factors.clear();
+        for (int s = first; s < last; ++s)
+            factors.emplace_back(factor, slave_local_[s], part.cell_size);
+        values.resize(last - first);
+        if (q != nullptr)
+            for (int k = begin; k < end; ++k) {
+                Vec3p v[per_group];
+                for (int a = 0; a < per_group; ++a)
+                    v[a] = (*q)[group_nodes[k * per_group + a]];
+                for (int s = groups[k].begin; s < groups[k].end; ++s)
+                    values[s - first] = gradient_at(factors[s - first], v);
+            }
+        f({first, last, begin / group_block}, values.data());
+        if (shares == nullptr)
+            return;
+        for (int k = begin; k < end; ++k) {
+            const int* nodes = group_nodes + k * per_group;
+            for (int c = 0; c < n; ++c)
+                for (int row = 0; row < n; row += rows, nodes += rows * n) {
+                    Vec3p sum[rows * n] = {};
+                    for (int s = groups[k].begin; s < groups[k].end; ++s)
+                        add_to_rows<S, rows>(
+                            factors[s - first], c, row, values[s - first], sum);
+                    for (int a = 0; a < rows * n; ++a)
+                        shares->at(nodes[a]) += sum[a];
+                }
+        }
+    };
+    if (sums == nullptr) {
+        for_chunks(part.last_group - part.first_group, group_block, [&](int begin, int end) {
+            pass_block(begin, end, nullptr);
+        });
+        return;
+    }
+    const auto sum_chunk = [&](int begin, int end, Shares& shares) {
+        for (int block = begin; block < end; block += group_block)
+            pass_block(block, std::min(block + group_block, end), &shares);
+    };
+    sum_groups(part, per_group, sum_chunk, *sums);
+}
+
+void CornerMap::visit_gradients(int body,
+                                Factor factor,
+                                const Field& q,
+                                const AtSlaves& visit) const {
+    const Part& part = parts_[body];
+    visit_spline(part.kernel, [&]<class S>(S) { pass<S>(part, factor, &q, visit, nullptr); });
+}
+
+void CornerMap::add_transposed(int body,
+                               Factor factor,
+                               const AtSlaves& fill,
+                               Field& sums) const {
+    const Part& part = parts_[body];
+    visit_spline(part.kernel, [&]<class S>(S) { pass<S>(part, factor, nullptr, fill, &sums); });
+}
+
+void CornerMap::add_through(int body, const Field& q, const AtSlaves& f, Field& sums) const {
+    const Part& part = parts_[body];
+    visit_spline(part.kernel, [&]<class S>(S) { pass<S>(part, Factor::Slope, &q, f, &sums); });
+}
+
+CornerMap::Slaves CornerMap::slaves_of(int body) const {
+    const Part& part = parts_[body];
+    const int n_groups = part.last_group - part.first_group;
+    if (n_groups == 0)
+        return {};
+    return {groups_[part.first_group].begin,
+            groups_[part.last_group - 1].end,
+            (n_groups + group_block - 1) / group_block};
+}
+
+Vec3p CornerMap::second_moment(int body, int slave) const {
+    const Part& part = parts_[body];
+    const Vec3p& t = slave_local_[slave];
+    return visit_spline(part.kernel,
+                        [&]<class S>(S) {
+                            const Vec3p exact =
+                                S::n == 2 ? t * (1 - t) : Vec3p{} + S::second_moment;
+                            const Vec3p least = Vec3p{} + least_moment;
+                            return Vec3p(exact > least ? exact : least);
+                        })
+           * (part.cell_size * part.cell_size);
+}
+
+}  // namespace sim
