@@ -169,7 +169,7 @@ bool Stepper::has_kept_way(const Field& x) const {
         double squared = 0;
         for (int c = begin; c < end; ++c)
             squared = std::max(squared, dot(x_end_[c] - x[c], x_end_[c] - x[c]));
-        if (squared > std::pow(most_cells * cell_size, 2))
+        if (squared > std::pow(cells_per_step * cell_size, 2))
             return false;
     }
     return true;

@@ -13,7 +13,7 @@ namespace {
 constexpr int chunk = 8192;
 constexpr double noise =
     1e-8;  // of the kinetic energy: strain energy too small to tell a frequency
-constexpr double most_cells = 0.6;  // that two parts may near each other by in a step
+constexpr double cells_between_parts = 0.6;  // by which two may near each other in a step
 
 }  // namespace
 
@@ -156,7 +156,7 @@ double Stepper::relative_limit(const State& state) const {
                 continue;
             const Vec3p between = mean[a] - mean[b];
             const double speed = std::sqrt(dot(between, between)) + deviation[a] + deviation[b];
-            limit = std::min(limit, most_cells * ranges_[a].cell_size / speed);
+            limit = std::min(limit, cells_between_parts * ranges_[a].cell_size / speed);
         }
     return limit;
 }

@@ -28,7 +28,7 @@ void Stepper::advance(State& state, double end, double dt) {
         const SurfaceContact::Start start = {state.x, state.v, state.top_speed, state.contacts};
         surfaces_.see(start);
         const double stable =
-            is_explicit ? std::min({dt, limit_of_way(most_cells), stable_limit()}) : dt;
+            is_explicit ? std::min({dt, limit_of_way(cells_per_step), stable_limit()}) : dt;
         const double drift = std::min(stable, state.dt_limit);
         const double longest = may_drift_freely() ? longest_of_drifts(state, drift, dt) : drift;
         const double allowed =

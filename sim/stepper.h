@@ -148,7 +148,7 @@ class Stepper {
                          double time_end,
                          NewtonSummary& summary);
 
-    static constexpr double most_cells = 0.3;  // that a corner may pass in an explicit step
+    static constexpr double cells_per_step = 0.3;  // that a corner may pass in an explicit one
 
     const Scene& scene_;
     Assembly& assembly_;
