@@ -81,8 +81,9 @@ double Stepper::longest_of_drifts(const State& state, double drift, double dt) c
     for (const Pin& pin : scene_.pins) {
         if (!is_in_force(pin, state.time))
             continue;
-        const bool turns = std::holds_alternative<Pin::Spin>(pin.moves);  // moves along chords
-        life = std::min(life, turns ? dt : pin.until - state.time);
+        life = std::min(life, pin.until - state.time);
+        if (std::holds_alternative<Pin::Spin>(pin.moves))  // along chords
+            life = std::min(life, dt);
     }
     return drift * std::max(1.0, std::floor(life / drift + rounding));
 }
