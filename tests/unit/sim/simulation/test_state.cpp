@@ -2,9 +2,9 @@
 #include "sim/simulation.h"
 #include "tests/support/bar_scene.h"
 #include "tests/support/soft_block.h"
+#include "tests/support/threads.h"
 
 #include <catch2/catch.hpp>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 
@@ -26,6 +26,42 @@ const sim::Method all_methods[] = {
 /// Between two states of a scene.   [m]
 double way_of_probe(const sim::Simulation& from, const sim::Simulation& to) {
     return (to.probes()[0].position - from.probes()[0].position).norm();
+}
+
+enum class Meeting { OfSurfaces, WithItself, OnGrid, OfPoints };
+const auto all_meetings = {
+    Meeting::OfSurfaces, Meeting::WithItself, Meeting::OnGrid, Meeting::OfPoints};
+
+/// Two cubes n domains wide, of which the left one meets the right one. It may be of snow, and both may be one body: then they
+/// are further apart, as neighbours at rest do not meet, and the left one is driven.
+sim::Scene meeting(Meeting kind, sim::Steps steps, int n) {
+    const int n_apart = kind == Meeting::WithItself ? 3 : 1;
+    const double side = 0.3, edge = side / n, apart = n_apart * edge;
+    const Vec3 low(-side - apart, 0, 0), size = Vec3::Constant(side),
+                                         velocity(4 * n_apart, 0, 0);
+    sim::Scene scene;
+    scene.solver.steps = steps;
+    scene.solver.dt = 1e-3;
+    scene.contact.friction = {false, 0.3};
+    scene.bodies = {tests::soft_block("left", low, size, edge, 1e6)};
+    const assets::Box right{{0, 0, 0}, size};
+    if (kind == Meeting::WithItself) {
+        scene.solver.method = sim::Method::Fem;  // else they meet by the grid of their body
+        const assets::Box left{low, low + size};
+        scene.bodies[0].source.geometry = assets::Shape{
+            assets::Combination{assets::Combination::Kind::Union, {{left}, {right}}}};
+        scene.pins = {{"ram", "left", {left, {}}, sim::Pin::Velocity{velocity}}};
+        scene.probes = {{"struck", "left", Vec3(0, side / 2, side / 2)}};
+        return scene;
+    }
+    scene.bodies.push_back(tests::soft_body("right", right, edge, 1e6));
+    scene.probes = {{"struck", "right", Vec3(0, side / 2, side / 2)}};
+    scene.bodies[0].velocity = velocity;
+    if (kind == Meeting::OnGrid)
+        scene.contact.mode = sim::Contact::Mode::Grid;
+    if (kind == Meeting::OfPoints)
+        scene.bodies[0].regions[0].model = sim::Model::Snow;
+    return scene;
 }
 
 }  // namespace
@@ -92,6 +128,26 @@ TEST_CASE("a restored checkpoint of a body in a collider goes on to the same bit
     CHECK(deepest > 0);
 }
 
+TEST_CASE("a restored checkpoint of bodies that meet goes on to the same bits") {
+    // Lists and watches that last for several steps start anew, and must tell the same.
+    const Meeting kind = GENERATE(values(all_meetings));
+    const sim::Steps steps = GENERATE(sim::Steps::Implicit, sim::Steps::Explicit);
+    CAPTURE(int(kind), int(steps));
+    const sim::Scene scene = meeting(kind, steps, 6);
+    sim::Simulation whole(scene, frame_time);
+    for (int frame = 1; frame <= 12; ++frame) {
+        sim::Simulation resumed(scene, frame_time);
+        REQUIRE(resumed.restore(whole.checkpoint()));
+        whole.advance_to(0.004 * frame);
+        resumed.advance_to(0.004 * frame);
+        const bool goes_on = whole.checkpoint() == resumed.checkpoint();
+        CAPTURE(frame);
+        CHECK(goes_on);
+    }
+    CHECK(way_of_probe(sim::Simulation(scene, frame_time), whole)
+          > 1e-3);  // pushed by the other
+}
+
 TEST_CASE("a checkpoint that another version of the program wrote is left alone") {
     const sim::Scene scene = bar(sim::Method::Enriched, sim::Steps::Explicit);
     sim::Simulation simulation(scene, frame_time);
@@ -114,15 +170,27 @@ TEST_CASE("one thread and two give the same bits") {
     options.domain_size = 0.0125;
     options.solver.dt = 2e-3;
     options.solver.method = GENERATE(sim::Method::Enriched, sim::Method::Mpm);
-    std::vector<std::byte> states[2];
-    for (const int n_threads : {1, 2}) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                        n_threads);
+    const auto run = [&] {
         sim::Simulation simulation(tests::bar_scene(options), frame_time);
         simulation.advance_to(0.02);
-        states[n_threads - 1] = simulation.checkpoint();
-    }
-    CHECK(states[0] == states[1]);
+        return simulation.checkpoint();
+    };
+    const bool is_same = tests::on_threads(1, run) == tests::on_threads(2, run);
+    CHECK(is_same);
+}
+
+TEST_CASE("one thread and two give the same bits where bodies meet") {
+    const Meeting kind = GENERATE(values(all_meetings));
+    CAPTURE(int(kind));
+    const sim::Scene scene = meeting(kind, sim::Steps::Explicit, 16);  // several chunks
+    const auto run = [&] {
+        sim::Simulation simulation(scene, frame_time);
+        simulation.advance_to(0.005);
+        CHECK(way_of_probe(sim::Simulation(scene, frame_time), simulation) > 1e-4);
+        return simulation.checkpoint();
+    };
+    const bool is_same = tests::on_threads(1, run) == tests::on_threads(2, run);
+    CHECK(is_same);
 }
 
 TEST_CASE("an equilibrium of a body that nothing holds is refused with its cause") {
