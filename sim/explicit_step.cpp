@@ -179,6 +179,7 @@ bool Stepper::is_clear_of_surfaces(const State& state, double dt) {
     // Several drifts know of no other body: where they end in one, the step is taken again by a shorter one.
     if (surfaces_.empty())
         return true;
+    surfaces_.see_end(x_end_);
     surfaces_.begin_step({state.x, state.v, state.top_speed, state.contacts}, x_end_, dt);
     return !surfaces_.touches(x_end_);
 }

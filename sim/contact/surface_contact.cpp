@@ -120,6 +120,14 @@ double SurfaceContact::largest_step(const Start& start, double dt) {
     return limit;
 }
 
+void SurfaceContact::see_end(const Field& x) {
+    const std::vector<Extent> there = extents(x, x);
+    for (std::size_t b = 0; b < extents_.size(); ++b) {
+        extents_[b].bounds.add(there[b].bounds.low);
+        extents_[b].bounds.add(there[b].bounds.high);
+    }
+}
+
 void SurfaceContact::begin_step(const Start& start, const Field& x_expected, double dt) {
     x_n_ = start.x;
     held_ = start.held;

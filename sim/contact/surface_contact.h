@@ -53,6 +53,9 @@ class SurfaceContact : public ContactEnergy {
     /// Looks where bodies are and how they move: before largest_step() and begin_step() of the same start.
     void see(const Start& start) { extents_ = extents(start.x, start.v); }
 
+    /// Bodies are near as well where they are at x (#C): a long step may have led there faster than see() could tell.
+    void see_end(const Field& x);
+
     /// The longest step that moves no vertex further into a body that it may touch than a part of its thickness.   [s]
     double largest_step(const Start& start, double dt);
 

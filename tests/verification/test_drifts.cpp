@@ -182,3 +182,21 @@ TEST_CASE("cubes that meet in the middle of a long explicit step stay out of eac
     CHECK(least < 0.99 * tests::energy(start));  // they have met
     CHECK(deepest < 0.02);
 }
+
+TEST_CASE("a body that is flung at another within a long explicit step stays out of it",
+          "[drifts]") {
+    // From rest, 0.3 domains away, by 0.5 domains in a step that speeds at its start do not make shorter.
+    const double duration = 8.5e-3, edge = 0.05, side = 0.3, gap = 0.3 * edge;
+    sim::Scene scene;
+    scene.solver = bar(sim::Method::Fem, duration).solver;
+    const Vec3 size = Vec3::Constant(side);
+    scene.bodies = {tests::soft_block("flung", {-side - gap, 0, 0}, size, edge, 1e6),
+                    tests::soft_block("still", {0, 0, 0}, size, edge, 1e6)};
+    const double mass = 1000 * std::pow(side, 3), acceleration = edge / std::pow(duration, 2);
+    scene.forces.push_back(
+        sim::DeadLoad{"flung", {sim::Selector::All{}, {}}, {mass * acceleration, 0, 0}});
+    sim::Simulation simulation(scene, frame);
+    simulation.advance_to(duration);
+    CHECK(simulation.stats().gap < 0.01);  // they have met
+    CHECK(simulation.stats().penetration < 0.02);
+}
