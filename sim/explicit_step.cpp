@@ -55,6 +55,7 @@ bool Stepper::try_explicit(State& state, double dt) {
     begin_forces(state, length);
 
     summary_ = {};
+    quiet_drifts_ = state.quiet_drifts;
     first_kick(state);
     if (!take_drifts(state, length))
         return false;
@@ -79,6 +80,7 @@ bool Stepper::try_explicit(State& state, double dt) {
     std::swap(state.x, x_end_);
     std::swap(state.v, v_end_);
     std::swap(gradient_, end_gradient_);
+    state.quiet_drifts = quiet_drifts_;
     end_step(state, dt);
     return true;
 }
@@ -107,7 +109,7 @@ void Stepper::first_kick(const State& state) {
             q_moved_[held.dof] * potential_.step().is_free[held.dof] + held.velocity;
 }
 
-bool Stepper::take_drifts(State& state, double length) {
+bool Stepper::take_drifts(const State& state, double length) {
     if (!drift_with_contact(state, state.x, state.time, length))
         return false;
     inner_gradient_.assign(prescribed_.corners.size(), Vec3p{});
@@ -125,7 +127,10 @@ bool Stepper::take_drifts(State& state, double length) {
            || (has_kept_way(state.x) && is_clear_of_surfaces(state, n_drifts_ * length));
 }
 
-bool Stepper::drift_with_contact(State& state, const Field& x, double time, double length) {
+bool Stepper::drift_with_contact(const State& state,
+                                 const Field& x,
+                                 double time,
+                                 double length) {
     map_.apply_and_move(q_moved_, moved_, x, length, x_end_);
     bool meets_bodies = false;
     if (n_drifts_ == 1 && exchange_contact(state, length)) {
@@ -139,7 +144,7 @@ bool Stepper::drift_with_contact(State& state, const Field& x, double time, doub
     const bool presses = n_drifts_ == 1 && restrain_by_surfaces(state, length);
     // Under a map for many drifts the grid keeps all of a hit on slaved corners to itself, and loses more of it in the next.
     const bool hits = restrain_by_colliders(x, length) > hard_hit && !map_.is_identity();
-    state.quiet_drifts = meets_bodies || presses || hits ? 0 : state.quiet_drifts + 1;
+    quiet_drifts_ = meets_bodies || presses || hits ? 0 : quiet_drifts_ + 1;
     return true;
 }
 

@@ -129,8 +129,8 @@ class Stepper {
     double limit_of_way(double cells) const;
     bool try_explicit(State& state, double dt);
     void first_kick(const State& state);
-    bool take_drifts(State& state, double length);
-    bool drift_with_contact(State& state, const Field& x, double time, double length);
+    bool take_drifts(const State& state, double length);
+    bool drift_with_contact(const State& state, const Field& x, double time, double length);
     void kick_between_drifts();
     bool has_kept_way(const Field& x) const;
     bool is_clear_of_surfaces(const State& state, double dt);
@@ -192,6 +192,7 @@ class Stepper {
     std::vector<double> speed_;        // (#bodies) of the fastest corner [m/s]
     Field gradient_, end_gradient_;    // of explicit steps, at the start and the end (#C) [N]
     int n_drifts_ = 1;                 // of the step, if it is explicit
+    double quiet_drifts_ = 0;          // where it ends
     Field x_drift_, gradient_before_;  // where its last drift begins, of several (#C) [m], [N]
     Field inner_gradient_;  // Σ over what lies between its drifts, at prescribed corners [N]
 };
