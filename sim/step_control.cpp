@@ -14,7 +14,7 @@ constexpr double shortest = 1e-3;        // step worth trying, as a share of dt
 constexpr double rounding = 1e-6;        // of a number of steps
 constexpr int life_of_map = 8;           // of one that explicit drifts share, at most, in dt
 constexpr double cells_under_map = 0.1;  // that a corner may pass meanwhile
-constexpr int quiet_per_drift = 2;       // drifts without a touch before, for each of a step
+constexpr int quiet_per_drift = 2;       // since the last touch, for each drift of a step
 
 }  // namespace
 
@@ -47,6 +47,8 @@ void Stepper::advance(State& state, double end, double dt) {
             continue;
         }
         if (n_drifts_ > 1) {
+            // By a touch, or too far or too fast for a map so old: single drifts try again from here, each under a map of
+            // its own. What is wrong with more than that fails there too, and is told.
             state.quiet_drifts = 0;
             continue;
         }
