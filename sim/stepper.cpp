@@ -338,17 +338,21 @@ void Stepper::measure_speed(const State& state) {
 void Stepper::refresh(const State& state) {
     begin_step(state, 0, Scheme::BackwardEuler);
     q_moved_ = q_ = q_n_;
-    Field gradient;
-    potential_.value_and_gradient(q_, gradient);
-    potential_.elastic_gradient(state.x, gradient_);  // explicit contact is no energy
+    const bool is_explicit = scene_.solver.steps == Steps::Explicit;
+    Field on_dofs;
+    if (is_explicit)  // contact is no energy there
+        potential_.elastic_gradient(state.x, gradient_);
+    else
+        potential_.value_and_gradient(q_, on_dofs);
+    const Field& gradient = is_explicit ? gradient_ : potential_.corner_gradient();
     Field inner(map_.n_dofs()), force(map_.n_dofs());
     add_start_gradient(inner);
     map_.apply_transposed(assembly_.force, force);
     set_node_reactions([&](int i) { return inner[i] - force[i]; });
     reaction_.assign(state.x.size(), Vec3p{});
     for (const int c : prescribed_.corners)
-        reaction_[c] = (potential_.corner_gradient()[c] - assembly_.force[c])
-                       * (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]);
+        reaction_[c] =
+            (gradient[c] - assembly_.force[c]) * (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]);
 }
 
 double Stepper::mass_on_dofs() const {
