@@ -15,7 +15,7 @@ namespace {
 
 constexpr double steps_per_frame = 10;  // where the shot gives no dt
 
-// Begins every checkpoint; counts up where what State holds, or its order, changes.
+// Begins every checkpoint; counts up where what checkpoint() writes changes.
 constexpr char checkpoint_format[] = "state 1";
 
 void append(std::vector<std::byte>& bytes, const void* data, std::size_t size) {
@@ -184,10 +184,14 @@ std::vector<std::byte> Simulation::checkpoint() const {
     return bytes;
 }
 
-bool Simulation::restore(const std::vector<std::byte>& bytes) {
+bool Simulation::is_readable(const std::vector<std::byte>& bytes) {
+    const std::size_t size = sizeof checkpoint_format;
+    return bytes.size() >= size && std::memcmp(bytes.data(), checkpoint_format, size) == 0;
+}
+
+void Simulation::restore(const std::vector<std::byte>& bytes) {
+    assets::check(is_readable(bytes), "checkpoint of this version");
     std::size_t next = sizeof checkpoint_format;
-    if (bytes.size() < next || std::memcmp(bytes.data(), checkpoint_format, next) != 0)
-        return false;
     State& state = impl_->state;
     const auto take = [&](void* to, std::size_t size) {
         assets::check(next + size <= bytes.size(), "checkpoint of another scene");
@@ -226,7 +230,6 @@ bool Simulation::restore(const std::vector<std::byte>& bytes) {
     }
     assets::check(next == bytes.size(), "checkpoint of another scene");
     impl_->stepper.refresh(state);
-    return true;
 }
 
 }  // namespace sim

@@ -75,10 +75,12 @@ class Simulation {
     /// The bodies made of points, in order, now. They have no skins among surfaces().
     std::vector<PointCloud> point_clouds() const;
 
-    /// Everything that later frames depend on, in double; restore() continues bit-identically. It returns false and
-    /// changes nothing where a version of the program that keeps its state otherwise wrote the checkpoint.
+    /// Everything that later frames depend on, in double; restore() continues bit-identically.
     std::vector<std::byte> checkpoint() const;
-    [[nodiscard]] bool restore(const std::vector<std::byte>& state);
+    void restore(const std::vector<std::byte>& checkpoint);
+
+    /// Whether restore() can read it: not where a version of the program wrote it that keeps its state otherwise.
+    static bool is_readable(const std::vector<std::byte>& checkpoint);
 
   private:
     struct Impl;

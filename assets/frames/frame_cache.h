@@ -67,8 +67,10 @@ std::string digest(const Fingerprint& fingerprint);
 /// How far a cache has come.
 struct CacheExtent {
     int n_whole_frames = 0;  // of those asked for, from the first, verified
-    std::optional<int>
-        checkpoint_frame;  // verified; its frame comes first, so a kill may leave this one behind
+
+    // The last one with its frame's number; empty where there is none or it is damaged. Its frame comes first, so a kill may
+    // leave this one behind.
+    std::optional<std::pair<int, std::vector<std::byte>>> checkpoint;
 };
 
 /// Looks into `folder` without touching anything; nothing found where it holds no cache. Throws Error(Input) where
@@ -99,9 +101,6 @@ class FrameCacheWriter {
 
     /// Replaces the one checkpoint. Throws as write() does.
     void write_checkpoint(int frame_number, const std::vector<std::byte>& state);
-
-    /// The last checkpoint and its frame's number; empty where there is none or it is damaged.
-    std::optional<std::pair<int, std::vector<std::byte>>> read_checkpoint() const;
 
   private:
     std::filesystem::path folder_;

@@ -100,10 +100,7 @@ CacheExtent cache_extent(const fs::path& folder,
     if (!found)
         return {};
     require_same(folder, *found, make_manifest(fingerprint, frame_numbers));
-    CacheExtent extent{count_whole(folder, frame_numbers), {}};
-    if (const auto checkpoint = find_checkpoint(folder))
-        extent.checkpoint_frame = checkpoint->first;
-    return extent;
+    return {count_whole(folder, frame_numbers), find_checkpoint(folder)};
 }
 
 FrameCacheWriter::FrameCacheWriter(fs::path folder,
@@ -153,11 +150,6 @@ void FrameCacheWriter::write(const Frame& frame) {
 
 void FrameCacheWriter::write_checkpoint(int frame_number, const std::vector<std::byte>& state) {
     write_atomically(folder_ / checkpoint_name, encode_checkpoint(frame_number, state));
-}
-
-std::optional<std::pair<int, std::vector<std::byte>>> FrameCacheWriter::read_checkpoint()
-    const {
-    return find_checkpoint(folder_);
 }
 
 }  // namespace assets

@@ -7,9 +7,11 @@
 #include "shots/stages/vdb_files.h"
 #include "sim/simulation.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <fmt/core.h>
+#include <utility>
 
 namespace shots {
 namespace {
@@ -49,15 +51,33 @@ struct Companions {
     VdbFiles vdbs;
 };
 
-/// Whether nothing is left to do. Throws where the cache belongs to another fingerprint.
-bool is_complete(const SimulateJob& job, const Companions& companions) {
-    const auto n_frames = static_cast<int>(job.frames.size());
-    const assets::CacheExtent extent =
-        assets::cache_extent(cache_folder(job.folder), job.fingerprint, job.frames);
-    return extent.n_whole_frames == n_frames && extent.checkpoint_frame >= job.frames.back()
-           && companions.reach(job,
-                               n_frames - 1,
-                               assets::FrameCacheReader(cache_folder(job.folder)).surfaces());
+/// What an earlier run has left to go on from: a checkpoint up to which the frames and all beside them are whole.
+struct Past {
+    int n_frames = 0;
+    std::vector<std::byte> checkpoint;
+};
+
+/// Throws Error(Input) where the cache belongs to another fingerprint, or where another version of the program wrote the
+/// checkpoint of a shot that is to go on: frames of two versions do not belong into one film.
+Past find_past(const SimulateJob& job, const Companions& companions) {
+    const std::filesystem::path folder = cache_folder(job.folder);
+    assets::CacheExtent extent = assets::cache_extent(folder, job.fingerprint, job.frames);
+    if (!extent.checkpoint)
+        return {};
+    auto& [frame, checkpoint] = *extent.checkpoint;
+    const int index = std::min(frame, job.frames.back()) - job.frames.front();
+    if (index < 0 || index >= extent.n_whole_frames
+        || !companions.reach(job, index, assets::FrameCacheReader(folder).surfaces()))
+        return {};
+    if (frame < job.frames.back() && !sim::Simulation::is_readable(checkpoint))
+        throw assets::Error(
+            assets::ErrorKind::Input,
+            fmt::format(
+                "{}: another version of supple simulated the frames up to {}; start again "
+                "with --overwrite, or use another --out",
+                folder.string(),
+                frame));
+    return {index + 1, std::move(checkpoint)};
 }
 
 /// Of bodies made of domains, then of colliders, then of bodies made of points.
@@ -81,31 +101,6 @@ std::vector<assets::SurfaceFrame> surfaces_at(const SimulateJob& job,
         surfaces.push_back(sim::surface_frame(cloud, job.scene.bodies.at(cloud.body), surface));
     }
     return surfaces;
-}
-
-/// Restores the last checkpoint where the frames and all beside them up to it are whole; returns the index of the frame to
-/// compute next, 0 to begin at the beginning. Throws Error(Input) where another version of the program wrote it: frames of
-/// two versions do not belong into one film.
-int resume(const SimulateJob& job,
-           const assets::FrameCacheWriter& cache,
-           const Companions& companions,
-           const std::vector<assets::CachedSurface>& surfaces,
-           sim::Simulation& simulation) {
-    const auto checkpoint = cache.read_checkpoint();
-    if (!checkpoint)
-        return 0;
-    const int index = checkpoint->first - job.frames.front();
-    if (index < 0 || index >= cache.n_whole_frames() || !companions.reach(job, index, surfaces))
-        return 0;
-    if (!simulation.restore(checkpoint->second))
-        throw assets::Error(
-            assets::ErrorKind::Input,
-            fmt::format(
-                "{}: another version of supple simulated the frames up to {}; start again "
-                "with --overwrite, or use another --out",
-                cache_folder(job.folder).string(),
-                checkpoint->first));
-    return index + 1;
 }
 
 /// Everything about a frame reaches the disk in an order that a resume can rely on: a frame's file implies its rows
@@ -144,7 +139,9 @@ void simulate(const SimulateJob& job, Progress& progress) {
     check_job(job);
     const Companions companions(job.folder);
     const auto n_frames = static_cast<int>(job.frames.size());
-    if (!job.overwrite && is_complete(job, companions)) {
+    const Past past = job.overwrite ? Past{} : find_past(job, companions);
+    const int first = past.n_frames;
+    if (first == n_frames) {
         progress.say(fmt::format("sim: all {} frames are in {} already",
                                  n_frames,
                                  cache_folder(job.folder).string()));
@@ -157,7 +154,8 @@ void simulate(const SimulateJob& job, Progress& progress) {
     const auto surfaces = surfaces_of(job, simulation);
     assets::FrameCacheWriter cache(
         cache_folder(job.folder), job.fingerprint, job.frames, surfaces, job.overwrite);
-    const int first = resume(job, cache, companions, surfaces, simulation);
+    if (first > 0)
+        simulation.restore(past.checkpoint);
     companions.cut_after(job.frames.front() + first - 1);
 
     progress.start("sim", n_frames, first);

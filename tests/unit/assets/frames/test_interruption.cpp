@@ -40,7 +40,7 @@ class FileSizeLimit {
 /// Goes on after the last checkpoint, which no kill lets get ahead of the frames.
 void write_frames(const std::filesystem::path& folder) {
     FrameCacheWriter writer(folder, fingerprint, numbers, surfaces, false);
-    const auto checkpoint = writer.read_checkpoint();
+    const auto checkpoint = cache_extent(folder, fingerprint, numbers).checkpoint;
     REQUIRE((!checkpoint || checkpoint->first <= writer.n_whole_frames()));
     for (int number = checkpoint ? checkpoint->first + 1 : 1; number <= numbers.back();
          ++number) {

@@ -170,17 +170,14 @@ TEST_CASE("what another version of the program began is refused and kept") {
                              assets::FrameCacheReader(cache_folder(job.folder)).surfaces(),
                              false)
         .write_checkpoint(1003, make_state(1));  // no state of this version
-    auto before = output(folder.path());
+    const auto before = output(folder.path());
     CHECK(run(job).built == 0);  // nothing is left to do
 
     job = make_job(folder.path(), 5);
-    CHECK_THROWS_WITH(
-        run(job), Contains("another version of supple") && Contains("1003; start again"));
-    CHECK(run(make_job(folder.path(), 3)).built == 0);
-    auto after = output(folder.path());
-    for (auto* files : {&before, &after})
-        files->erase("cache/manifest.json");  // tells of five frames now
-    CHECK(after == before);
+    CHECK_THROWS_WITH(run(job),
+                      Contains("another version of supple") && Contains("1003; start again"));
+    CHECK(simulation_counts().built == 0);
+    CHECK(output(folder.path()) == before);
 
     job.overwrite = true;
     CHECK(run(job).advanced == 4);

@@ -75,7 +75,7 @@ TEST_CASE("a restored checkpoint goes on to the same bits") {
             second(scene, frame_time);
         whole.advance_to(0.05);
         first.advance_to(0.05);
-        REQUIRE(second.restore(first.checkpoint()));
+        second.restore(first.checkpoint());
         CHECK(second.time() == first.time());
         whole.advance_to(0.1);
         second.advance_to(0.1);
@@ -96,7 +96,7 @@ TEST_CASE("a restored checkpoint of points goes on to the same bits") {
         second(scene, frame_time);
     whole.advance_to(0.03);
     first.advance_to(0.03);
-    REQUIRE(second.restore(first.checkpoint()));
+    second.restore(first.checkpoint());
     whole.advance_to(0.06);
     second.advance_to(0.06);
     const bool goes_on = whole.checkpoint() == second.checkpoint();
@@ -117,7 +117,7 @@ TEST_CASE("a restored checkpoint of a body in a collider goes on to the same bit
     sim::Simulation whole(scene, frame_time), resumed(scene, frame_time);
     double deepest = 0;
     for (int frame = 1; frame <= 10; ++frame) {
-        REQUIRE(resumed.restore(whole.checkpoint()));
+        resumed.restore(whole.checkpoint());
         whole.advance_to(0.02 * frame);
         resumed.advance_to(0.02 * frame);
         const bool goes_on = whole.checkpoint() == resumed.checkpoint();
@@ -137,7 +137,7 @@ TEST_CASE("a restored checkpoint of bodies that meet goes on to the same bits") 
     sim::Simulation whole(scene, frame_time);
     for (int frame = 1; frame <= 12; ++frame) {
         sim::Simulation resumed(scene, frame_time);
-        REQUIRE(resumed.restore(whole.checkpoint()));
+        resumed.restore(whole.checkpoint());
         whole.advance_to(0.004 * frame);
         resumed.advance_to(0.004 * frame);
         const bool goes_on = whole.checkpoint() == resumed.checkpoint();
@@ -148,19 +148,16 @@ TEST_CASE("a restored checkpoint of bodies that meet goes on to the same bits") 
           > 1e-3);  // pushed by the other
 }
 
-TEST_CASE("a checkpoint that another version of the program wrote is left alone") {
+TEST_CASE("a checkpoint that another version of the program wrote is told") {
     const sim::Scene scene = bar(sim::Method::Enriched, sim::Steps::Explicit);
-    sim::Simulation simulation(scene, frame_time);
-    simulation.advance_to(0.05);
-    const std::vector<std::byte> now = simulation.checkpoint();
+    const std::vector<std::byte> now = sim::Simulation(scene, frame_time).checkpoint();
+    CHECK(sim::Simulation::is_readable(now));
     std::vector<std::byte> other = now;
     other[6] ^= std::byte{1};  // the number of its format
-    CHECK_FALSE(simulation.restore(other));
+    CHECK_FALSE(sim::Simulation::is_readable(other));
     other.assign(now.begin() + 8, now.end());  // of before there was one: begins with the time
-    CHECK_FALSE(simulation.restore(other));
-    CHECK_FALSE(simulation.restore({}));
-    const bool is_untouched = simulation.checkpoint() == now;
-    CHECK(is_untouched);
+    CHECK_FALSE(sim::Simulation::is_readable(other));
+    CHECK_FALSE(sim::Simulation::is_readable({}));
 }
 
 TEST_CASE("one thread and two give the same bits") {
