@@ -67,8 +67,11 @@ Assembly::Assembly(const Scene& scene) {
         else
             gravity += std::get<Gravity>(item).acceleration;
     }
-    for (int c = 0; c < n_corners(); ++c)
-        force[c] += mass[c] * padded(gravity);
+    for (AssembledBody& body : bodies)
+        for (int c = body.begin; c < body.end; ++c) {
+            body.has_weight_alone &= dot(force[c], force[c]) == 0;
+            force[c] += mass[c] * padded(gravity);
+        }
 
     for (const Pin& pin : scene.pins)
         add_pin(scene, pin);
@@ -119,7 +122,6 @@ void Assembly::add_points(const Body& body,
 
 void Assembly::add_force(const Scene& scene, const DeadLoad& load) {
     const int b = index_of(scene.bodies, load.body);
-    bodies[b].has_dead_load = true;
     const Lattice& lattice = bodies[b].lattice;
     const std::vector<int> corners = select_corners(lattice, scene.bodies[b], load.select);
     if (bodies[b].points) {

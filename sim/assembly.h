@@ -31,7 +31,7 @@ struct AssembledBody {
     std::optional<Enrichment> enrichment;       // of domains
     std::optional<MaterialPoints> points;       // in place of both
     std::vector<EmbeddedSurface> surfaces;      // none of points
-    bool has_dead_load = false;                 // its weight is then not all that acts on it
+    bool has_weight_alone = true;               // no other force acts on it
 
     AssembledBody(const Body& body,
                   Lattice made,

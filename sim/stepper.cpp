@@ -178,11 +178,9 @@ void Stepper::transfer_forces(const Field* inner) {
     // What acts on slaves, to nodes. Forces of insides act on corners alone: those of points go to nodes by themselves.
     acting_.resize(assembly_.force.size());
     node_force_.resize(map_.n_dofs());
-    std::vector<char> has_weight_alone(ranges_.size());
     for (std::size_t b = 0; b < ranges_.size(); ++b) {
         const AssembledBody& body = assembly_.bodies[b];
-        has_weight_alone[b] = body.points && !body.has_dead_load;
-        if (has_weight_alone[b])
+        if (body.points && body.has_weight_alone)
             continue;
         const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
         for (int s = slaves.begin; s < slaves.end; ++s) {
@@ -194,9 +192,11 @@ void Stepper::transfer_forces(const Field* inner) {
         map_.gather_at_nodes(static_cast<int>(b), acting_, node_force_);
     }
     const Vec3p gravity = padded(assembly_.gravity);
-    for (int i = map_.n_free(); i < map_.n_dofs(); ++i)
-        if (has_weight_alone[map_.dof_body()[i]])
+    for (int i = map_.n_free(); i < map_.n_dofs(); ++i) {
+        const AssembledBody& body = assembly_.bodies[map_.dof_body()[i]];
+        if (body.points && body.has_weight_alone)
             node_force_[i] = dof_mass_[i] * gravity;
+    }
 }
 
 void Stepper::expect_free_motion() {
