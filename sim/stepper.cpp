@@ -183,12 +183,15 @@ void Stepper::transfer_forces(const Field* inner) {
         if (body.points && body.has_weight_alone)
             continue;
         const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
-        for (int s = slaves.begin; s < slaves.end; ++s) {
-            const int c = map_.slave_corner()[s];
-            acting_[c] = assembly_.force[c];
-            if (inner != nullptr && !body.points)
-                acting_[c] -= (*inner)[c];
-        }
+        const bool has_inner = inner != nullptr && !body.points;
+        for_chunks(slaves.end - slaves.begin, chunk, [&](int begin, int end) {
+            for (int s = slaves.begin + begin; s < slaves.begin + end; ++s) {
+                const int c = map_.slave_corner()[s];
+                acting_[c] = assembly_.force[c];
+                if (has_inner)
+                    acting_[c] -= (*inner)[c];
+            }
+        });
         map_.gather_at_nodes(static_cast<int>(b), acting_, node_force_);
     }
     const Vec3p gravity = padded(assembly_.gravity);
