@@ -258,6 +258,7 @@ bool Stepper::exchange_contact(const State& state, double dt) {
         {state.x, assembly_.mass, assembly_.volume, assembly_.outside, prescribed_.is_free});
     if (contact.is_empty())
         return false;
+    bool have_met = false;
     corner_.resize(moved_.size());
     for (int pass = 0; pass < (map_.is_identity() ? 1 : passes_where_slaved); ++pass) {
         Field& wanted = corner_;
@@ -265,9 +266,10 @@ bool Stepper::exchange_contact(const State& state, double dt) {
             wanted[c] = moved_[c];
         if (!contact.exchange(dt, wanted))
             break;
+        have_met = true;
         move_through_grid(contact.corners(), wanted);
     }
-    return true;
+    return have_met;
 }
 
 void Stepper::move_through_grid(const std::vector<int>& corners, Field& wanted) {
