@@ -3,6 +3,7 @@
 #include "sim/stepper.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace sim {
@@ -241,9 +242,10 @@ bool Stepper::restrain_by_surfaces(const State& state, double dt) {
 }
 
 double Stepper::second_kick(const Field& gradient_before) {
-    // Of free corners at once, by what slaved ones give their nodes later: each place is filled, to spare branches that no
-    // processor guesses, and only that of its kind is read. On the way the frequency of the motion:
-    // w² = |M⁻¹ dg|²_M / dx·dg, with dg the change of the forces over dx: of the modes in dx the fastest weigh most.
+    // v_end_ becomes the new velocity of free corners. Of slaves only the force, in corner_, is of use, for their nodes:
+    // kick_nodes() writes their velocity. Both are set for every corner, as free and slaved ones alternate so that a branch
+    // costs more. On the way the frequency of the motion: w² = |M⁻¹ dg|²_M / dx·dg, with dg the change of the forces over
+    // dx: of the modes in dx the fastest weigh most.
     const double damped = 1 / (1 + scene_.solver.damping * dt_hat_), length = 2 * dt_hat_;
     v_end_.resize(moved_.size());
     corner_.resize(moved_.size());
@@ -275,12 +277,13 @@ double Stepper::second_kick(const Field& gradient_before) {
 
 void Stepper::kick_nodes(const State& state, double dt) {
     // Slaves keep of their velocity what the grid could not see (FLIP): v = T q + keep (v_n - T q_n), in one go.
+    assert(n_drifts_ == 1 || !has_points_);
     const int n = map_.n_dofs();
     const auto& step = potential_.step();
     const double damped = 1 / (1 + scene_.solver.damping * dt_hat_),
                  keep = std::pow(damped, 2 * n_drifts_) * share_kept(dt);
     for (std::size_t b = 0; b < points_.size(); ++b)
-        if (!points_[b])  // on points the same acts as at the start of the step
+        if (!points_[b])  // on points the same acts as at the start of their one drift
             map_.gather_at_nodes(static_cast<int>(b), corner_, node_force_);
     for (int i = map_.n_free(); i < n; ++i) {
         const Vec3p inner = has_points_ ? grid_gradient_[i] : Vec3p{};

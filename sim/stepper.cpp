@@ -275,7 +275,7 @@ bool Stepper::exchange_contact(const State& state, double dt) {
 void Stepper::move_through_grid(const std::vector<int>& corners, Field& wanted) {
     // A slaved corner can only move as its grid does. Were it given more, the next step would not know of it, ask for
     // the same again, and pile up speed: so a change goes through the map, T M⁻¹ Tᵀ m, free corners as it is. Only
-    // `corners` are given another velocity, mostly few.
+    // `corners` are given another velocity, mostly few; in place of it `wanted` then holds the momentum to gain.
     const Field& is_free = potential_.step().is_free;
     q_change_.resize(map_.n_dofs());
     for (const int c : corners)

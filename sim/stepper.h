@@ -170,7 +170,8 @@ class Stepper {
     Field v_hat_;                       // v^ of the scheme (#C) [m/s]
     std::vector<double> dof_mass_;      // (#dofs) [kg]
     Field q_n_, q_;                     // (#dofs) [m/s]
-    Field node_force_;                  // (#dofs) Tᵀ f; at nodes alone in explicit steps [N]
+    // (#dofs) Tᵀ f; explicit steps: of domains with their stress, and at nodes alone   [N]
+    Field node_force_;
     Field q_moved_;   // (#dofs) what moved_ comes from, but for a rigid shift [m/s]
     Field q_change_;  // (#dofs) what a contact adds to it [m/s]
 
@@ -185,7 +186,9 @@ class Stepper {
     std::vector<NodeReaction> node_reactions_;
     Field start_gradient_, grid_gradient_;  // of points in explicit steps (#dofs) [N]
     Field moved_;  // (#C) velocity that moves the corners in this step [m/s]
-    Field corner_, reaction_;
+    // (#C) scratch of one function and what it calls; but kick_nodes() takes forces of second_kick() from it
+    Field corner_;
+    Field reaction_;                   // (#C) of pins [N]
     Field x_end_;                      // (#C) where they end [m]
     Field v_end_;                      // (#C) and how fast, of explicit steps [m/s]
     Field acting_;                     // (#C) forces that go to nodes, at slaves alone [N]
