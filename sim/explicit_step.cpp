@@ -30,10 +30,10 @@ double sum_of(const Vec3p& v) {
 
 double Stepper::stable_limit() const {
     double limit = infinity;
-    for (std::size_t b = 0; b < points_.size(); ++b) {
+    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b) {
         const AssembledBody& body = assembly_.bodies[b];
         const double highest =
-            points_[b] ? points_[b]->highest_frequency(body.kernel) : body.highest_frequency;
+            body.points ? points_[b]->highest_frequency(body.kernel) : body.highest_frequency;
         limit = std::min(limit, safety * 2 / highest);
     }
     return limit;
@@ -41,8 +41,8 @@ double Stepper::stable_limit() const {
 
 double Stepper::limit_of_way(double cells) const {
     double limit = infinity;
-    for (std::size_t b = 0; b < points_.size(); ++b)
-        limit = std::min(limit, cells * assembly_.bodies[b].cell_size / speed_[b]);
+    for (std::size_t b = 0; b < ranges_.size(); ++b)
+        limit = std::min(limit, cells * ranges_[b].cell_size / speed_[b]);
     return limit;
 }
 
