@@ -244,8 +244,7 @@ bool Stepper::restrain_by_surfaces(const State& state, double dt) {
 double Stepper::second_kick(const Field& gradient_before) {
     // v_end_ becomes the new velocity of free corners. Of slaves only the force, in corner_, is of use, for their nodes:
     // kick_nodes() writes their velocity. Both are set for every corner, as free and slaved ones alternate so that a branch
-    // costs more. On the way the frequency of the motion: w² = |M⁻¹ dg|²_M / dx·dg, with dg the change of the forces over
-    // dx: of the modes in dx the fastest weigh most.
+    // costs more. On the way the frequency of the motion.
     const double damped = 1 / (1 + scene_.solver.damping * dt_hat_), length = 2 * dt_hat_;
     v_end_.resize(moved_.size());
     corner_.resize(moved_.size());
@@ -271,6 +270,10 @@ double Stepper::second_kick(const Field& gradient_before) {
             return Vec3p{sum_of(force), sum_of(strain), sum_of(motion), 0};
         });
     }
+    return frequency_of(sums);
+}
+
+double Stepper::frequency_of(const Vec3p& sums) const {
     const double force = sums[0], strain = sums[1], motion = sums[2];
     return strain * dt_hat_ * dt_hat_ > noise * motion ? std::sqrt(force / strain) : 0;
 }

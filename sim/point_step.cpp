@@ -11,8 +11,6 @@ namespace sim {
 namespace {
 
 constexpr int chunk = 8192;
-constexpr double noise =
-    1e-8;  // of the kinetic energy: strain energy too small to tell a frequency
 constexpr double cells_between_parts = 0.6;  // by which two may near each other in a step
 
 }  // namespace
@@ -127,8 +125,7 @@ double Stepper::seen_frequency_of_points() {
             }
             return sum;
         });
-    const double force = sums[0], strain = sums[1], motion = sums[2];
-    return strain * dt_hat_ * dt_hat_ > noise * motion ? std::sqrt(force / strain) : 0;
+    return frequency_of(sums);
 }
 
 double Stepper::relative_limit(const State& state) const {

@@ -139,6 +139,9 @@ class Stepper {
     Field free_inverse_mass();
     bool restrain_by_surfaces(const State& state, double dt);
     double second_kick(const Field& gradient_before);
+    /// w² = |M⁻¹ dg|²_M / dx·dg, with dg the change of the forces over dx: of the modes in dx the fastest weigh most. The
+    /// sums are |M⁻¹ dg|²_M, dx·dg and |dx|²_M; 0 where they are noise.   [1/s]
+    double frequency_of(const Vec3p& sums) const;
     void kick_nodes(const State& state, double dt);
     void set_explicit_reactions(const State& state, double dt);
 
