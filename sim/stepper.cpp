@@ -1,7 +1,6 @@
 #include "sim/stepper.h"
 
 #include "sim/base/parallel.h"
-#include "sim/contact/grid_contact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +11,6 @@ namespace {
 
 constexpr int chunk = 8192;
 constexpr double forgetting = 1;  // rate at which a body's top speed fades [1/s]
-// Contact on the grid, where corners are slaved: what it asks for the map gives in part only, so it asks again.
-constexpr int passes_where_slaved = 4;
 
 double energy_scale(const Lattice& lattice) {
     double sum = 0;
@@ -239,59 +236,6 @@ void Stepper::prescribe_dofs(const State& state, const Field& x_n, double drift,
         held_.push_back({node.dof, node.velocity});
         step.is_free[node.dof] = node.is_free;
     }
-}
-
-bool Stepper::exchange_contact(const State& state, double dt) {
-    // Surface contact is between domains: points meet bodies on the grid in any case.
-    std::vector<GridPair> pairs;
-    const std::vector<AssembledBody>& bodies = assembly_.bodies;
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-        for (std::size_t j = i + 1; j < bodies.size(); ++j)
-            if (scene_.contact.mode == Contact::Mode::Grid || bodies[i].points
-                || bodies[j].points)
-                pairs.push_back({{bodies[i].begin, bodies[i].end},
-                                 {bodies[j].begin, bodies[j].end},
-                                 std::max(bodies[i].lattice.edge, bodies[j].lattice.edge),
-                                 friction_.between(int(i), int(j))});
-    GridContact contact(
-        pairs,
-        {state.x, assembly_.mass, assembly_.volume, assembly_.outside, prescribed_.is_free});
-    if (contact.is_empty())
-        return false;
-    bool have_met = false;
-    corner_.resize(moved_.size());
-    for (int pass = 0; pass < (map_.is_identity() ? 1 : passes_where_slaved); ++pass) {
-        Field& wanted = corner_;
-        for (const int c : contact.corners())
-            wanted[c] = moved_[c];
-        if (!contact.exchange(dt, wanted))
-            break;
-        have_met = true;
-        move_through_grid(contact.corners(), wanted);
-    }
-    return have_met;
-}
-
-void Stepper::move_through_grid(const std::vector<int>& corners, Field& wanted) {
-    // A slaved corner can only move as its grid does. Were it given more, the next step would not know of it, ask for
-    // the same again, and pile up speed: so a change goes through the map, T M⁻¹ Tᵀ m, free corners as it is. Only
-    // `corners` are given another velocity, mostly few; in place of it `wanted` then holds the momentum to gain.
-    const Field& is_free = potential_.step().is_free;
-    q_change_.resize(map_.n_dofs());
-    for (const int c : corners)
-        wanted[c] = assembly_.mass[c] * (wanted[c] - moved_[c]) * prescribed_.is_free[c];
-    map_.apply_transposed_of(corners, wanted, q_change_);
-    for (int i = 0; i < map_.n_dofs(); ++i) {
-        q_change_[i] *= inverse_mass_[i] * is_free[i];
-        q_moved_[i] += q_change_[i];
-    }
-    map_.add_applied(q_change_, moved_);
-}
-
-void Stepper::drift(const Field& x_n, double length) {
-    x_end_.resize(x_n.size());
-    for (std::size_t c = 0; c < x_n.size(); ++c)
-        x_end_[c] = x_n[c] + length * moved_[c];
 }
 
 void Stepper::end_on_targets() {

@@ -92,14 +92,16 @@ class Stepper {
     void transfer_forces(const Field* inner);
     void expect_free_motion();
     void prescribe_dofs(const State& state, const Field& x_n, double drift, double dt);
-    bool exchange_contact(const State& state, double dt);
-    void move_through_grid(const std::vector<int>& corners, Field& wanted);
-    void drift(const Field& x_n, double length);
     void end_on_targets();
     void commit(State& state, double dt);
     double share_kept(double dt) const;
     void end_step(State& state, double dt);
     void measure_speed(const State& state);
+
+    // step_contact.cpp: contact after the velocities are known
+    bool exchange_contact(const State& state, double dt);
+    void move_through_grid(const std::vector<int>& corners, Field& wanted);
+    void drift(const Field& x_n, double length);
 
     // point_step.cpp: what points and APIC add to a step
     std::vector<GridEnergy*> make_points();
