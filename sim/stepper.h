@@ -138,7 +138,6 @@ class Stepper {
     bool is_clear_of_surfaces(const State& state, double dt);
     // Returns how deep a corner would have got in, in domain edges.
     double restrain_by_colliders(const Field& x, double length);
-    Field free_inverse_mass();
     bool restrain_by_surfaces(const State& state, double dt);
     double second_kick(const Field& gradient_before);
     /// w² = |M⁻¹ dg|²_M / dx·dg, with dg the change of the forces over dx: of the modes in dx the fastest weigh most. The

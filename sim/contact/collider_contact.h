@@ -67,9 +67,12 @@ class ColliderContact : public ContactEnergy {
         Impulses::Touch touch;
     };
 
-    /// Those that velocities v (#C) would move from x by more than `depth` [domain edges] into a collider in a step of dt, each
-    /// with the collider as a plane where the corner would end.
-    std::vector<Stop> stops(const Field& x, const Field& v, double dt, double depth) const;
+    /// Those that velocities v (#C) would move from x by more than `least_depth` [domain edges] into a collider in a step of dt,
+    /// each with the collider as a plane where the corner would end.
+    std::vector<Stop> stops(const Field& x,
+                            const Field& v,
+                            double dt,
+                            double least_depth) const;
 
     /// Of a corner in a collider.
     struct Penetration {

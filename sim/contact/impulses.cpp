@@ -14,8 +14,15 @@ constexpr int most_sweeps = 100;
 
 }  // namespace
 
-Impulses::Impulses(const CornerMap& map, const Field& inverse_mass, double dt)
-    : map_(map), inverse_mass_(inverse_mass), dt_(dt), place_(map.n_dofs(), -1) {}
+Impulses::Impulses(const CornerMap& map,
+                   const std::vector<double>& inverse_mass,
+                   const Field& is_free,
+                   double dt)
+    : map_(map),
+      inverse_mass_(inverse_mass),
+      is_free_(is_free),
+      dt_(dt),
+      place_(map.n_dofs(), -1) {}
 
 void Impulses::add(const Touch& touch, std::span<const Share> shares) {
     Impulse impulse{touch, static_cast<int>(weights_.size())};
@@ -25,7 +32,7 @@ void Impulses::add(const Touch& touch, std::span<const Share> shares) {
     Vec3p sum{};
     for (int k = impulse.first; k < impulse.last; ++k) {
         const auto& [i, w] = weights_[k];
-        sum += w * w * inverse_mass_[i];
+        sum += w * w * inverse_mass(i);
         place_[i] = -1;
     }
     const Vec3 inverse = unpadded(sum);
@@ -77,7 +84,7 @@ double Impulses::settle(Impulse& impulse, Field& q) const {
     const double change = push - impulse.push;
     const Vec3p added = padded(change * normal + hold - impulse.hold);
     for (const auto& [i, w] : weights)
-        q[i] += w * inverse_mass_[i] * added;
+        q[i] += w * inverse_mass(i) * added;
     impulse.push = push;
     impulse.hold = hold;
     return std::abs(change) * impulse.inverse_along * dt_ / edge;

@@ -32,8 +32,11 @@ class Impulses {
         double weight = 0;
     };
 
-    /// `inverse_mass` (#dofs) is 0 in prescribed components [1/kg]. Both are referred to.
-    Impulses(const CornerMap& map, const Field& inverse_mass, double dt);
+    /// `inverse_mass` [1/kg] and `is_free`, 1 or 0 in each component, are of degrees of freedom. All are referred to.
+    Impulses(const CornerMap& map,
+             const std::vector<double>& inverse_mass,
+             const Field& is_free,
+             double dt);
 
     std::size_t size() const { return impulses_.size(); }
 
@@ -54,8 +57,11 @@ class Impulses {
     void add_row(int corner, double factor, int first);
     double settle(Impulse& impulse, Field& q) const;
 
+    Vec3p inverse_mass(int dof) const { return inverse_mass_[dof] * is_free_[dof]; }
+
     const CornerMap& map_;
-    const Field& inverse_mass_;
+    const std::vector<double>& inverse_mass_;
+    const Field& is_free_;
     double dt_ = 0;
     std::vector<Impulse> impulses_;
     std::vector<CornerMap::Weight> weights_;  // of p - o in q, each degree of freedom once

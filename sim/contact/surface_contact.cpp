@@ -186,6 +186,7 @@ SurfaceContact::Contact SurfaceContact::prepared(const ContactPoint& point, int 
         contact.start_depth = std::min(depth, held + pair.recovery);
         contact.gap += depth - contact.start_depth;
     }
+    contact.start_gap = contact.gap + contact.normal.dot(start);
     contact.grip = Grip::of(
         pair.friction, contact.stiffness, contact.start_depth, dt_, contact.normal, start);
     return contact;

@@ -5,6 +5,7 @@
 #include "sim/contact/contact_point.h"
 #include "sim/contact/fold_watch.h"
 #include "sim/contact/grip.h"
+#include "sim/contact/impulses.h"
 #include "sim/contact/near_domain_lists.h"
 #include "sim/contact/padded_bounds.h"
 #include "sim/contact/pair_friction.h"
@@ -84,16 +85,13 @@ class SurfaceContact : public ContactEnergy {
     /// Whether a vertex has begun or ceased to touch since the start of the step that has led to x.
     bool has_changed_touch(const Field& x) const;
 
-    /// What contact takes from velocities q of the degrees of freedom that would move corners from x in an explicit step of
-    /// dt: impulses between vertices and domains that end the step where they touch, through the map, as only what it lets
-    /// through moves corners, and friction of up to mu times as much. Inelastic, so that no energy comes of it.
-    /// `inverse_mass` (#dofs) is 0 in prescribed components [1/kg]. Returns by how much any q has changed [m/s], at most;
-    /// none where there was nothing to take.
-    std::optional<double> restrain(const Field& x,
-                                   const CornerMap& map,
-                                   const Field& inverse_mass,
-                                   double dt,
-                                   Field& q) const;
+    /// Takes from velocities q of the degrees of freedom, and v = T q of the corners, what would move vertices into domains in
+    /// the explicit step, by `impulses`, none yet, of that step. Returns by how much any q has changed [m/s], at most; none where there
+    /// was nothing to take.
+    std::optional<double> restrain(const CornerMap& map,
+                                   Impulses& impulses,
+                                   Field& q,
+                                   Field& v) const;
 
     /// Deepest penetration and smallest gap at x, as shares of the domain's edge; gaps are known up to `reach`.
     struct Report {
@@ -108,7 +106,8 @@ class SurfaceContact : public ContactEnergy {
         int pair = 0, index = 0;  // of the vertex in its body
         double stiffness = 0;     // k [N/m]
         Grip grip;                // of p - o
-        double start_depth = 0;   // at the start of the step [m]
+        // At the start of the step: along the normal, negative inside, and how deep that is.   [m]
+        double start_gap = 0, start_depth = 0;
     };
 
     struct Pair {

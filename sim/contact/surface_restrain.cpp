@@ -27,30 +27,26 @@ std::array<Impulses::Share, 16> shares_of(const ContactPoint& contact) {
 
 }  // namespace
 
-std::optional<double> SurfaceContact::restrain(const Field& x,
-                                               const CornerMap& map,
-                                               const Field& inverse_mass,
-                                               double dt,
-                                               Field& q) const {
+std::optional<double> SurfaceContact::restrain(const CornerMap& map,
+                                               Impulses& impulses,
+                                               Field& q,
+                                               Field& v) const {
     if (contacts_.empty())
         return std::nullopt;
     // Contacts that would end inside, then those that the impulses of these bring inside.
     const Field q_before = q;
-    Impulses impulses(map, inverse_mass, dt);
     std::vector<char> is_in(contacts_.size(), 0);
-    Field buffer(x.size());
     for (int round = 0; round < most_rounds; ++round) {
-        const Field& v = map.applied(q, buffer);
         const std::size_t before = impulses.size();
         for (std::size_t k = 0; k < contacts_.size(); ++k) {
             const Contact& contact = contacts_[k];
-            const Vec3 start = contact.separation(x);
             if (is_in[k]
-                || !(contact.depth(start + dt * contact.separation(v)) > enough * contact.edge))
+                || !(-contact.start_gap - dt_ * contact.normal.dot(contact.separation(v))
+                     > enough * contact.edge))
                 continue;
             is_in[k] = 1;
             impulses.add({contact.normal,
-                          contact.gap + contact.normal.dot(start),
+                          contact.start_gap,
                           contact.edge,
                           pairs_[contact.pair].friction},
                          shares_of(contact));
@@ -58,6 +54,7 @@ std::optional<double> SurfaceContact::restrain(const Field& x,
         if (impulses.size() == before)
             break;
         impulses.settle(q);
+        map.apply(q, v);
     }
     if (impulses.size() == 0)
         return std::nullopt;

@@ -4,8 +4,6 @@
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 
-#include <optional>
-
 using sim::CornerMap;
 using sim::Field;
 using sim::Impulses;
@@ -18,17 +16,21 @@ const Vec3 slope = Vec3(1, -2, 2) / 3;
 /// Corners in a box, free or moved by a grid, and their degrees of freedom with random velocities and masses.
 struct Corners {
     CornerMap map;
-    Field mass, inverse_mass, q;
+    std::vector<double> mass, inverse_mass;
+    Field is_free, q;
 
-    Corners(int n, bool is_free, tests::Random& random) {
+    Corners(int n, bool are_free, tests::Random& random) {
         const Field x = tests::random_field(n, random, 1.5 * edge);
-        map.rebuild(x, std::vector<char>(n, is_free), {{0, n, 2 * edge}});
+        map.rebuild(x, std::vector<char>(n, are_free), {{0, n, 2 * edge}});
         q = tests::random_field(map.n_dofs(), random);
         for (int i = 0; i < map.n_dofs(); ++i) {
-            mass.push_back(sim::padded(Vec3::Constant(tests::between(random, 0.1, 1))));
-            inverse_mass.push_back(sim::padded(Vec3::Constant(1 / mass[i][0])));
+            mass.push_back(tests::between(random, 0.1, 1));
+            inverse_mass.push_back(1 / mass[i]);
+            is_free.push_back(sim::padded(Vec3::Ones()));
         }
     }
+
+    Impulses impulses() const { return {map, inverse_mass, is_free, dt}; }
 
     Field velocities() const {
         Field v(map.dof_of_corner().size());
@@ -70,9 +72,11 @@ TEST_CASE("frictionless impulses change velocities by the least kinetic energy")
     for (int trial = 0; trial < 20; ++trial) {
         Corners corners(3 * n, is_free, random);
         const int n_dofs = corners.map.n_dofs();
-        Impulses impulses(corners.map, corners.inverse_mass, dt);
+        Impulses impulses = corners.impulses();
         Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, 3 * n_dofs);
-        Eigen::VectorXd gaps(n), mass(3 * n_dofs), before(3 * n_dofs), after(3 * n_dofs);
+        Eigen::VectorXd gaps(n), mass(3 * n_dofs);
+        for (int i = 0; i < n_dofs; ++i)
+            mass.segment<3>(3 * i).setConstant(corners.mass[i]);
         for (int k = 0; k < n; ++k) {
             const Vec3 normal = (slope + tests::random_vector(random, 0.3)).normalized();
             gaps[k] = tests::between(random, -0.05, 0.05) * edge;
@@ -86,17 +90,16 @@ TEST_CASE("frictionless impulses change velocities by the least kinetic energy")
                     A.row(k).segment<3>(3 * i) += weight * w * normal.transpose();
             }
         }
-        const auto flat = [&](const Field& field) {
+        const auto flat_q = [&] {
             Eigen::VectorXd result(3 * n_dofs);
             for (int i = 0; i < n_dofs; ++i)
-                result.segment<3>(3 * i) = sim::unpadded(field[i]);
+                result.segment<3>(3 * i) = sim::unpadded(corners.q[i]);
             return result;
         };
-        before = flat(corners.q);
-        mass = flat(corners.mass);
+        const Eigen::VectorXd before = flat_q();
         impulses.settle(corners.q);
-        after = flat(corners.q);
-        const Eigen::VectorXd expected = nearest_allowed(A, gaps, mass, before);
+        const Eigen::VectorXd after = flat_q(),
+                              expected = nearest_allowed(A, gaps, mass, before);
         most_change = std::max(most_change, (expected - before).lpNorm<Eigen::Infinity>());
         CHECK((after - expected).lpNorm<Eigen::Infinity>() < 1e-3 * edge / dt);
     }
@@ -114,7 +117,7 @@ TEST_CASE("a corner that slides on what moves is slowed by mu of what stops it, 
         const Vec3 carried = tests::random_vector(random, 0.1);
         const Vec3 before = sim::unpadded(corners.velocities()[3]) - carried;
         const double gap = tests::between(random, -0.1, 0.1) * edge;
-        Impulses impulses(corners.map, corners.inverse_mass, dt);
+        Impulses impulses = corners.impulses();
         impulses.add({slope, gap, edge, {sticks, mu}, carried}, {{Impulses::Share{3, 1}}});
         impulses.settle(corners.q);
         const Vec3 after = sim::unpadded(corners.velocities()[3]) - carried;
@@ -129,9 +132,9 @@ TEST_CASE("a corner that slides on what moves is slowed by mu of what stops it, 
 TEST_CASE("what is held on all sides is left alone, by others too") {
     tests::Random random(3);
     Corners corners(2, true, random);
-    corners.inverse_mass[0] = sim::Vec3p{};
+    corners.is_free[0] = sim::Vec3p{};
     const Field before = corners.q;
-    Impulses impulses(corners.map, corners.inverse_mass, dt);
+    Impulses impulses = corners.impulses();
     impulses.add({slope, -edge, edge, {true, 0}, Vec3::Zero()}, {{Impulses::Share{0, 1}}});
     CHECK(impulses.size() == 0);
     impulses.add({slope, -edge, edge, {true, 0}, Vec3::Zero()},

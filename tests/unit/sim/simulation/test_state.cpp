@@ -28,6 +28,26 @@ double way_of_probe(const sim::Simulation& from, const sim::Simulation& to) {
     return (to.probes()[0].position - from.probes()[0].position).norm();
 }
 
+/// Checks that a new simulation goes on from each frame as `whole` does; returns how deep that was in colliders, in domain
+/// edges.
+double check_resumes(sim::Simulation& whole,
+                     const sim::Scene& scene,
+                     double frame_length,
+                     int n_frames) {
+    double deepest = 0;
+    for (int frame = 1; frame <= n_frames; ++frame) {
+        sim::Simulation resumed(scene, frame_time);
+        resumed.restore(whole.checkpoint());
+        whole.advance_to(frame_length * frame);
+        resumed.advance_to(frame_length * frame);
+        const bool goes_on = whole.checkpoint() == resumed.checkpoint();
+        CAPTURE(frame);
+        CHECK(goes_on);
+        deepest = std::max(deepest, whole.stats().collider_penetration);
+    }
+    return deepest;
+}
+
 enum class Meeting { OfSurfaces, WithItself, OnGrid, OfPoints };
 const auto all_meetings = {
     Meeting::OfSurfaces, Meeting::WithItself, Meeting::OnGrid, Meeting::OfPoints};
@@ -114,18 +134,8 @@ TEST_CASE("a restored checkpoint of a body in a collider goes on to the same bit
     sim::Collider ground;
     ground.shape = sim::PlaneShape{{0, 0, 0}, {0, 0, 1}};
     scene.colliders.push_back(ground);
-    sim::Simulation whole(scene, frame_time), resumed(scene, frame_time);
-    double deepest = 0;
-    for (int frame = 1; frame <= 10; ++frame) {
-        resumed.restore(whole.checkpoint());
-        whole.advance_to(0.02 * frame);
-        resumed.advance_to(0.02 * frame);
-        const bool goes_on = whole.checkpoint() == resumed.checkpoint();
-        CAPTURE(frame);
-        CHECK(goes_on);
-        deepest = std::max(deepest, whole.stats().collider_penetration);
-    }
-    CHECK(deepest > 0);
+    sim::Simulation whole(scene, frame_time);
+    CHECK(check_resumes(whole, scene, 0.02, 10) > 0);
 }
 
 TEST_CASE("a restored checkpoint of bodies that meet goes on to the same bits") {
@@ -135,15 +145,7 @@ TEST_CASE("a restored checkpoint of bodies that meet goes on to the same bits") 
     CAPTURE(int(kind), int(steps));
     const sim::Scene scene = meeting(kind, steps, 6);
     sim::Simulation whole(scene, frame_time);
-    for (int frame = 1; frame <= 12; ++frame) {
-        sim::Simulation resumed(scene, frame_time);
-        resumed.restore(whole.checkpoint());
-        whole.advance_to(0.004 * frame);
-        resumed.advance_to(0.004 * frame);
-        const bool goes_on = whole.checkpoint() == resumed.checkpoint();
-        CAPTURE(frame);
-        CHECK(goes_on);
-    }
+    check_resumes(whole, scene, 0.004, 12);
     CHECK(way_of_probe(sim::Simulation(scene, frame_time), whole)
           > 1e-3);  // pushed by the other
 }
