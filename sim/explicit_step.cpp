@@ -3,7 +3,6 @@
 #include "sim/stepper.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace sim {
@@ -46,11 +45,24 @@ double Stepper::limit_of_way(double cells) const {
     return limit;
 }
 
+double Stepper::limit_of_slaves(const Field& v, double cells) const {
+    double limit = infinity;
+    for (std::size_t b = 0; b < ranges_.size(); ++b) {
+        const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
+        double squared = 0;
+        for (int s = slaves.begin; s < slaves.end; ++s) {
+            const Vec3p& speed = v[map_.slave_corner()[s]];
+            squared = std::max(squared, dot(speed, speed));
+        }
+        limit = std::min(limit, cells * ranges_[b].cell_size / std::sqrt(squared));
+    }
+    return limit;
+}
+
 bool Stepper::try_explicit(State& state, double dt) {
     const double length = dt / n_drifts_;
     dt_hat_ = length / 2;  // of a kick
     prescribe(scene_, assembly_, state.time, state.time + dt, prescribed_);
-    choose_free_corners(state.x);
     transfer_to_nodes(state, state.v, &gradient_);
     prescribe_dofs(state, state.x, dt, dt);
     begin_forces(state, length);
@@ -63,10 +75,10 @@ bool Stepper::try_explicit(State& state, double dt) {
     end_on_targets();
 
     // The forces there. The motion must not be faster than the step can follow.
-    grid_gradient_.assign(has_points_ ? map_.n_dofs() : 0, Vec3p{});
     if (!std::isfinite(potential_.elastic_gradient(x_end_, end_gradient_)
-                       + add_grid_gradient(q_moved_, dt, grid_gradient_)))
+                       + end_drift_of_points(length)))
         return false;
+    add_at_pinned_nodes(0.5);
     const double frequency = second_kick(n_drifts_ == 1 ? gradient_ : gradient_before_);
     if (std::max(frequency, seen_frequency_of_points()) * 2 * dt_hat_ > most_excited) {
         summary_.termination = Termination::Unstable;
@@ -98,10 +110,13 @@ void Stepper::first_kick(const State& state) {
             q_moved_[k] = damped * (state.v[c] + (dt_hat_ * inverse_mass_[k]) * force);
         }
     });
-    start_gradient_.assign(has_points_ ? n : 0, Vec3p{});
-    add_start_gradient(start_gradient_);
+    way_.assign(has_points_ ? n : 0, Vec3p{});
+    grid_gradient_.assign(has_points_ ? n : 0, Vec3p{});
+    add_start_gradient(grid_gradient_);
+    inner_at_nodes_.assign(pinned_nodes_.size(), Vec3p{});
+    add_at_pinned_nodes(0.5);
     for (int i = n_free; i < n; ++i) {
-        const Vec3p inner = has_points_ ? start_gradient_[i] : Vec3p{};
+        const Vec3p inner = has_points_ ? grid_gradient_[i] : Vec3p{};
         q_moved_[i] =
             damped * (q_n_[i] + (dt_hat_ * inverse_mass_[i]) * (node_force_[i] - inner));
     }
@@ -111,13 +126,16 @@ void Stepper::first_kick(const State& state) {
 }
 
 bool Stepper::take_drifts(const State& state, double length) {
+    begin_contact_on_grid(state.x);
     if (!drift_with_contact(state, state.x, state.time, length))
         return false;
     inner_gradient_.assign(prescribed_.corners.size(), Vec3p{});
     for (int k = 1; k < n_drifts_; ++k) {
         std::swap(x_drift_, x_end_);
-        if (!std::isfinite(potential_.elastic_gradient(x_drift_, gradient_before_)))
+        if (!std::isfinite(potential_.elastic_gradient(x_drift_, gradient_before_)
+                           + end_drift_of_points(length)))
             return false;
+        add_at_pinned_nodes(1);
         kick_between_drifts();
         const double time = state.time + k * length;
         colliders_.begin_step(x_drift_, state.top_speed, time, length);
@@ -133,11 +151,8 @@ bool Stepper::drift_with_contact(const State& state,
                                  double time,
                                  double length) {
     map_.apply_and_move(q_moved_, moved_, x, length, x_end_);
-    bool meets_bodies = false;
-    if (n_drifts_ == 1 && exchange_contact(state, length)) {
-        meets_bodies = true;
+    if (exchange_contact(x, length))
         drift(x, length);
-    }
     if (colliders_.largest_step(x, moved_, time, length) < length) {
         summary_.termination = Termination::Unstable;  // a corner might pass through a collider
         return false;
@@ -145,7 +160,7 @@ bool Stepper::drift_with_contact(const State& state,
     const bool presses = n_drifts_ == 1 && restrain_by_surfaces(state, length);
     // Many drifts under one map take more from a hit on slaved corners than as many under their own (test_drifts).
     const bool hits = restrain_by_colliders(x, length) > hard_hit && !map_.is_identity();
-    quiet_drifts_ = meets_bodies || presses || hits ? 0 : quiet_drifts_ + 1;
+    quiet_drifts_ = presses || hits ? 0 : quiet_drifts_ + 1;
     return true;
 }
 
@@ -155,18 +170,29 @@ void Stepper::kick_between_drifts() {
                  kick = dt_hat_ * (damped + kept);
     for (std::size_t i = 0; i < inner_gradient_.size(); ++i)
         inner_gradient_[i] += gradient_before_[prescribed_.corners[i]];
-    const int n = static_cast<int>(x_drift_.size());
-    corner_.resize(n);
-    for_chunks(n, chunk, [&](int begin, int end) {
-        for (int c = begin; c < end; ++c)
-            corner_[c] = assembly_.force[c] - gradient_before_[c];
-    });
-    map_.apply_transposed(corner_, node_force_);
+    corner_.resize(x_drift_.size());
+    for (const AssembledBody& body : assembly_.bodies)
+        if (!body.points)
+            for_chunks(body.end - body.begin, chunk, [&](int begin, int end) {
+                for (int c = body.begin + begin; c < body.begin + end; ++c)
+                    corner_[c] = assembly_.force[c] - gradient_before_[c];
+            });
+    gather_forces_at_nodes();
     const Field& is_free = potential_.step().is_free;
     for (int i = 0; i < map_.n_dofs(); ++i) {
-        const Vec3p q = kept * q_moved_[i] + (kick * inverse_mass_[i]) * node_force_[i];
+        const Vec3p inner = has_points_ ? grid_gradient_[i] : Vec3p{};
+        const Vec3p force =
+            i < map_.n_free() ? corner_[map_.free_corner()[i]] : node_force_[i] - inner;
+        const Vec3p q = kept * q_moved_[i] + (kick * inverse_mass_[i]) * force;
         q_moved_[i] += is_free[i] * (q - q_moved_[i]);
     }
+}
+
+void Stepper::gather_forces_at_nodes() {
+    // Of domains. What acts on points from outside stays as it was at the start of the step.
+    for (std::size_t b = 0; b < points_.size(); ++b)
+        if (!points_[b])
+            map_.gather_at_nodes(static_cast<int>(b), corner_, node_force_);
 }
 
 bool Stepper::has_kept_way(const Field& x) const {
@@ -201,8 +227,13 @@ double Stepper::restrain_by_colliders(const Field& x, double length) {
     for (int pass = 0; !stops.empty() && pass < contact_passes; ++pass) {
         for (const auto& [corner, depth, touch] : stops)
             impulses.add(touch, {{Impulses::Share{corner, 1}}});
+        Field& change = q_change_;
+        change = q_moved_;
         impulses.settle(q_moved_);
-        map_.apply_and_move(q_moved_, moved_, x, length, x_end_);
+        for (std::size_t i = 0; i < change.size(); ++i)
+            change[i] = q_moved_[i] - change[i];
+        map_.add_applied(change, moved_);
+        drift(x, length);
         // What the impulses have brought inside, or still is where the collider's surface turns.
         stops = colliders_.stops(x, moved_, length, depth_tolerance);
     }
@@ -272,14 +303,11 @@ double Stepper::frequency_of(const Vec3p& sums) const {
 
 void Stepper::kick_nodes(const State& state, double dt) {
     // Slaves keep of their velocity what the grid could not see (FLIP): v = T q + keep (v_n - T q_n), in one go.
-    assert(n_drifts_ == 1 || !has_points_);
     const int n = map_.n_dofs();
     const auto& step = potential_.step();
     const double damped = 1 / (1 + scene_.solver.damping * dt_hat_),
                  keep = std::pow(damped, 2 * n_drifts_) * share_kept(dt);
-    for (std::size_t b = 0; b < points_.size(); ++b)
-        if (!points_[b])  // on points the same acts as at the start of their one drift
-            map_.gather_at_nodes(static_cast<int>(b), corner_, node_force_);
+    gather_forces_at_nodes();
     for (int i = map_.n_free(); i < n; ++i) {
         const Vec3p inner = has_points_ ? grid_gradient_[i] : Vec3p{};
         const Vec3p v =
@@ -303,11 +331,12 @@ void Stepper::set_explicit_reactions(const State& state, double dt) {
         reaction_[c] = (inertia - assembly_.force[c] + gradient)
                        * (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]);
     }
-    const double damped = 1 + scene_.solver.damping * dt_hat_;
+    const double damped = std::pow(1 + scene_.solver.damping * dt_hat_, 2 * n_drifts_);
+    std::size_t k = 0;  // of pinned nodes, in whose order this asks
     set_node_reactions([&](int i) {
-        const Vec3p change = damped * damped * q_moved_[i] - q_n_[i];
-        return dof_mass_[i] * change / dt - node_force_[i]
-               + 0.5 * (start_gradient_[i] + grid_gradient_[i]);
+        const Vec3p change = damped * q_moved_[i] - q_n_[i];
+        const Vec3p inner = inner_at_nodes_[k++] / double(n_drifts_);
+        return dof_mass_[i] * change / dt - node_force_[i] + inner;
     });
 }
 

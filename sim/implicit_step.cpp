@@ -112,14 +112,17 @@ void Stepper::end_implicit(State& state, double dt) {
                / dt_hat_;
     });
     keep_inner_force(state);
-    exchange_contact(state, dt_hat_);
+    begin_contact_on_grid(state.x);
+    exchange_contact(state.x, dt_hat_);
     drift(potential_.step().x_n, dt_hat_);
     end_on_targets();
     commit(state, dt);
     commit_affine(state, q_moved_);
     for (std::size_t b = 0; b < points_.size(); ++b)
-        if (points_[b])
-            points_[b]->advance(q_moved_, dt_hat_, state.points[b]);
+        if (points_[b]) {
+            points_[b]->advance(q_moved_, dt_hat_);
+            points_[b]->accept(state.points[b]);
+        }
 }
 
 void Stepper::keep_inner_force(State& state) {

@@ -95,18 +95,29 @@ void Stepper::set_node_reactions(const std::function<Vec3p(int)>& force_on) {
     }
 }
 
-double Stepper::add_grid_gradient(const Field& q, double dt, Field& gradient) {
-    double energy = 0;
-    for (const auto& points : points_)
-        if (points)
-            energy += points->add_gradient(q, dt, gradient);
-    return energy;
-}
-
 void Stepper::add_start_gradient(Field& gradient) {
     for (const auto& points : points_)
         if (points)
             points->add_start_gradient(gradient);
+}
+
+double Stepper::end_drift_of_points(double length) {
+    if (!has_points_)
+        return 0;
+    for (std::size_t i = 0; i < way_.size(); ++i)
+        way_[i] += length * q_moved_[i];
+    std::swap(grid_gradient_, grid_gradient_before_);
+    grid_gradient_.assign(map_.n_dofs(), Vec3p{});
+    double energy = 0;
+    for (const auto& points : points_)
+        if (points)
+            energy += points->end_drift(way_, grid_gradient_);
+    return energy;
+}
+
+void Stepper::add_at_pinned_nodes(double share) {
+    for (std::size_t k = 0; k < pinned_nodes_.size() && has_points_; ++k)
+        inner_at_nodes_[k] += share * grid_gradient_[pinned_nodes_[k].dof];
 }
 
 double Stepper::seen_frequency_of_points() {
@@ -119,7 +130,7 @@ double Stepper::seen_frequency_of_points() {
             Vec3p sum{};
             for (int i = map_.n_free() + begin; i < map_.n_free() + end; ++i) {
                 const Vec3p dx = 2 * dt_hat_ * q_moved_[i];
-                const Vec3p dg = (grid_gradient_[i] - start_gradient_[i]) * is_free[i];
+                const Vec3p dg = (grid_gradient_[i] - grid_gradient_before_[i]) * is_free[i];
                 sum += Vec3p{
                     dot(dg, dg) * inverse_mass_[i], dot(dx, dg), dof_mass_[i] * dot(dx, dx), 0};
             }

@@ -13,7 +13,7 @@ constexpr int passes_where_slaved = 4;
 
 }  // namespace
 
-bool Stepper::exchange_contact(const State& state, double dt) {
+std::vector<GridPair> Stepper::pairs_on_grid() const {
     // Surface contact is between domains: points meet bodies on the grid in any case.
     std::vector<GridPair> pairs;
     const std::vector<AssembledBody>& bodies = assembly_.bodies;
@@ -25,9 +25,18 @@ bool Stepper::exchange_contact(const State& state, double dt) {
                                  {bodies[j].begin, bodies[j].end},
                                  std::max(bodies[i].lattice.edge, bodies[j].lattice.edge),
                                  friction_.between(int(i), int(j))});
-    GridContact contact(
-        pairs,
-        {state.x, assembly_.mass, assembly_.volume, assembly_.outside, prescribed_.is_free});
+    return pairs;
+}
+
+void Stepper::begin_contact_on_grid(const Field& x) {
+    grid_contact_.emplace(
+        pairs_on_grid(),
+        ContactFields{
+            x, assembly_.mass, assembly_.volume, assembly_.outside, prescribed_.is_free});
+}
+
+bool Stepper::exchange_contact(const Field& x, double dt) {
+    GridContact& contact = *grid_contact_;
     if (contact.is_empty())
         return false;
     bool have_met = false;
@@ -36,7 +45,7 @@ bool Stepper::exchange_contact(const State& state, double dt) {
         Field& wanted = corner_;
         for (const int c : contact.corners())
             wanted[c] = moved_[c];
-        if (!contact.exchange(dt, wanted))
+        if (!contact.exchange(x, dt, wanted))
             break;
         have_met = true;
         move_through_grid(contact.corners(), wanted);

@@ -13,7 +13,7 @@ constexpr double growth = 1.1;           // of a step after one that succeeded
 constexpr double shortest = 1e-3;        // step worth trying, as a share of dt
 constexpr double rounding = 1e-6;        // of a number of steps
 constexpr int life_of_map = 8;           // of one that explicit drifts share, at most, in dt
-constexpr double cells_under_map = 0.1;  // that a corner may pass meanwhile
+constexpr double cells_under_map = 0.1;  // that a slaved corner may pass meanwhile
 constexpr int quiet_per_drift = 2;       // since the last touch, for each drift of a step
 
 }  // namespace
@@ -30,7 +30,11 @@ void Stepper::advance(State& state, double end, double dt) {
         const double stable =
             is_explicit ? std::min({dt, limit_of_way(cells_per_step), stable_limit()}) : dt;
         const double drift = std::min(stable, state.dt_limit);
-        const double longest = may_drift_freely() ? longest_of_drifts(state, drift, dt) : drift;
+        if (is_explicit) {
+            prescribe(scene_, assembly_, state.time, state.time + drift, prescribed_);
+            choose_free_corners(state.x);
+        }
+        const double longest = is_explicit ? longest_of_drifts(state, drift, dt) : drift;
         const double allowed =
             std::min({longest,
                       colliders_.largest_step(state.x, state.v, state.time, longest),
@@ -68,17 +72,10 @@ void Stepper::advance(State& state, double end, double dt) {
     }
 }
 
-bool Stepper::may_drift_freely() const {
-    const bool meets_by_grid =
-        scene_.contact.mode == Contact::Mode::Grid && scene_.bodies.size() > 1;
-    // Points yield once a step.
-    return scene_.solver.steps == Steps::Explicit && !has_points_ && !meets_by_grid;
-}
-
 double Stepper::longest_of_drifts(const State& state, double drift, double dt) const {
     // As long as the map may serve. What has touched lately may touch again: then all drifts of the step would be in vain.
     double life = std::min({life_of_map * dt,
-                            limit_of_way(cells_under_map),
+                            limit_of_slaves(state.v, cells_under_map),
                             state.quiet_drifts / quiet_per_drift * drift});
     for (const Pin& pin : scene_.pins) {
         if (!is_in_force(pin, state.time))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/assembly.h"
+#include "sim/contact/grid_contact.h"
 #include "sim/contact/surface_contact.h"
 #include "sim/incremental_potential.h"
 #include "sim/pinned_nodes.h"
@@ -72,7 +73,6 @@ class Stepper {
 
   private:
     // step_control.cpp
-    bool may_drift_freely() const;
     double longest_of_drifts(const State& state, double drift, double dt) const;
     bool try_step(State& state, double dt);
 
@@ -99,7 +99,9 @@ class Stepper {
     void measure_speed(const State& state);
 
     // step_contact.cpp: contact after the velocities are known
-    bool exchange_contact(const State& state, double dt);
+    std::vector<GridPair> pairs_on_grid() const;
+    void begin_contact_on_grid(const Field& x);
+    bool exchange_contact(const Field& x, double dt);
     void move_through_grid(const std::vector<int>& corners, Field& wanted);
     void drift(const Field& x_n, double length);
 
@@ -108,8 +110,9 @@ class Stepper {
     void add_affine_momentum(const State& state);
     void commit_affine(State& state, const Field& q) const;
     void set_node_reactions(const std::function<Vec3p(int)>& force_on);
-    double add_grid_gradient(const Field& q, double dt, Field& gradient);
     void add_start_gradient(Field& gradient);
+    double end_drift_of_points(double length);
+    void add_at_pinned_nodes(double share);
     double seen_frequency_of_points();
     double relative_limit(const State& state) const;
 
@@ -129,11 +132,13 @@ class Stepper {
     // explicit_step.cpp
     double stable_limit() const;
     double limit_of_way(double cells) const;
+    double limit_of_slaves(const Field& v, double cells) const;
     bool try_explicit(State& state, double dt);
     void first_kick(const State& state);
     bool take_drifts(const State& state, double length);
     bool drift_with_contact(const State& state, const Field& x, double time, double length);
     void kick_between_drifts();
+    void gather_forces_at_nodes();
     bool has_kept_way(const Field& x) const;
     bool is_clear_of_surfaces(const State& state, double dt);
     // Returns how deep a corner would have got in, in domain edges.
@@ -188,7 +193,8 @@ class Stepper {
     std::vector<PrescribedDof> held_;
     std::vector<PinnedNode> pinned_nodes_;
     std::vector<NodeReaction> node_reactions_;
-    Field start_gradient_, grid_gradient_;  // of points in explicit steps (#dofs) [N]
+    // Of points in explicit steps, where a drift ends and where it began, and the way since the step did (#dofs)   [N], [m]
+    Field grid_gradient_, grid_gradient_before_, way_;
     Field moved_;  // (#C) velocity that moves the corners in this step [m/s]
     // (#C) scratch of one function and what it calls; but kick_nodes() takes forces of second_kick() from it
     Field corner_;
@@ -202,6 +208,8 @@ class Stepper {
     double quiet_drifts_ = 0;          // where it ends
     Field x_drift_, gradient_before_;  // where its last drift begins, of several (#C) [m], [N]
     Field inner_gradient_;  // Σ over what lies between its drifts, at prescribed corners [N]
+    Field inner_at_nodes_;  // Σ over its drifts, at pinned nodes [N]
+    std::optional<GridContact> grid_contact_;
 };
 
 }  // namespace sim

@@ -92,15 +92,17 @@ double ColliderContact::depth_in_step(
     return std::max(0.0, -(start.gap + normal.dot(x - start.position)));
 }
 
-template <class Position, class Visit>
-void ColliderContact::for_pairs(const Position& at, const Visit& visit) const {
+template <class Position, class Way, class Visit>
+void ColliderContact::for_pairs(const Position& at,
+                                const Way& way,
+                                const Visit& visit) const {
     if (empty())
         return;
     const int n_colliders = static_cast<int>(colliders_.size());
     const std::vector<int>& near = near_.near();
     std::size_t next = 0;
     Pair far;  // which grips nothing, as it does not touch at the start
-    for (const int k : near_.touching(at)) {
+    for (const int k : near_.touching(way)) {
         const bool is_near = next < near.size() && near[next] == k;
         for (int j = 0; j < n_colliders; ++j) {
             if (!is_near)
@@ -119,6 +121,7 @@ template <class Visit>
 void ColliderContact::for_touching(const Field& x, const Visit& visit) const {
     for_pairs(
         [&](int c) { return x[c]; },
+        [&](int c, const Vec3p& start) { return x[c] - start; },
         [&](int k, int, const Pair& pair, double depth, const Vec3& normal) {
             const ContactCorner& corner = corners_[k];
             if (depth > 0 || pair.grip.holds())
@@ -158,6 +161,7 @@ void ColliderContact::begin_step(const Field& x_n,
 bool ColliderContact::has_changed_touch(const Field& x) const {
     bool has_changed = false;
     for_pairs([&](int c) { return x[c]; },
+              [&](int c, const Vec3p& start) { return x[c] - start; },
               [&](int, int, const Pair& pair, double depth, const Vec3&) {
                   has_changed = has_changed || (depth > 0) != (pair.start.gap < 0);
               });
@@ -220,15 +224,16 @@ std::vector<ColliderContact::Stop> ColliderContact::stops(const Field& x,
                                                           double least_depth) const {
     std::vector<Stop> stops;
     const auto end = [&](int c) { return x[c] + dt * v[c]; };
-    for_pairs(end, [&](int k, int j, const Pair&, double depth, const Vec3& normal) {
+    const auto way = [&](int c, const Vec3p&) { return dt * v[c]; };
+    for_pairs(end, way, [&](int k, int j, const Pair&, double depth, const Vec3& normal) {
         const auto& [c, body, outside, stiffness, mass, edge] = corners_[k];
         if (!(depth > least_depth * edge))
             return;
         const Vec3 at = unpadded(x[c]),
                    carried = (poses_[j].carry(start_poses_[j].bring_back(at)) - at) / dt;
-        const double way = normal.dot(dt * (unpadded(v[c]) - carried));
+        const double along = normal.dot(dt * (unpadded(v[c]) - carried));
         stops.push_back(
-            {c, depth / edge, {normal, -depth - way, edge, colliders_[j].friction(), carried}});
+            {c, depth / edge, {normal, -depth - along, edge, colliders_[j].friction(), carried}});
     });
     return stops;
 }

@@ -118,10 +118,10 @@ class ColliderContact : public ContactEnergy {
                     Vec3& normal) const;
     double depth_in_step(int k, int j, const Start& start, const Vec3& x, Vec3& normal) const;
 
-    // All that may touch where the step ends with corners of the field at `at(corner)`, corner by corner and by collider:
-    // visit(k, j, pair, depth, normal).
-    template <class Position, class Visit>
-    void for_pairs(const Position& at, const Visit& visit) const;
+    // All that may touch where the step ends with corners of the field at `at(corner)`, as far from its start as NearCorners
+    // asks, corner by corner and by collider: visit(k, j, pair, depth, normal).
+    template <class Position, class Way, class Visit>
+    void for_pairs(const Position& at, const Way& way, const Visit& visit) const;
     template <class Visit>
     void for_touching(const Field& x, const Visit& visit) const;
 

@@ -105,7 +105,7 @@ class GridContact::Pair {
     }
 
     /// Returns whether the bodies have met anywhere; if not, nothing has changed.
-    bool sweep(double dt, Field& velocity) {
+    bool sweep(const Field& x_n, double dt, Field& velocity) {
         start_sweep();
         for (int s = 0; s < 2; ++s) {
             const double outward = s == 0 ? 1 : -1;
@@ -113,7 +113,7 @@ class GridContact::Pair {
                 Node& node = nodes_[n];
                 Side& side = node.side[s];
                 side.momentum += weight * fields_.mass[c][0] * velocity[c];
-                const Vec3p x = fields_.x[c] + dt * velocity[c];
+                const Vec3p x = x_n[c] + dt * velocity[c];
                 const Vec3p along =
                     node.normals[0] * x[0] + node.normals[1] * x[1] + node.normals[2] * x[2];
                 side.reach = larger(side.reach, outward * along - fields_.outside[c]);
@@ -291,10 +291,10 @@ bool GridContact::is_empty() const {
     return pairs_.empty();
 }
 
-bool GridContact::exchange(double dt, Field& velocity) {
+bool GridContact::exchange(const Field& x, double dt, Field& velocity) {
     bool have_met = false;
     for (Pair& pair : pairs_)
-        for (int k = 0; k < contact_sweeps && pair.sweep(dt, velocity); ++k)
+        for (int k = 0; k < contact_sweeps && pair.sweep(x, dt, velocity); ++k)
             have_met = true;
     return have_met;
 }

@@ -22,7 +22,7 @@ struct GridPair {
 
 /// What every corner brings into contact; all indexed by corner.
 struct ContactFields {
-    const Field& x;                      // positions at the start of the step [m]
+    const Field& x;                      // positions that tell the weights and normals [m]
     const Field& mass;                   // [kg]
     const std::vector<double>& volume;   // at rest [m³]
     const std::vector<double>& outside;  // distance out of the body's surface at rest [m]
@@ -46,7 +46,8 @@ struct ContactFields {
 /// with a face on a face get 0.03 edges into each other at a fifth of the speed of waves, 0.3 at that speed; a rim between
 /// two rows of the other's corners 0.3 to 0.5, and 1.1. Contact between surfaces keeps to 0.02.
 ///
-/// Holds for one step: `corners` must stay as they are as long as it lives.
+/// Holds for one step, of several drifts where the map T serves for as many: `corners` must stay as they are as long as it
+/// lives.
 class GridContact {
   public:
     /// Throws Error(Diverged) where two bodies spread over more cells than can be held.
@@ -59,9 +60,9 @@ class GridContact {
     /// Those that an exchange may change: which see a node that two bodies share. Each once, ascending.
     const std::vector<int>& corners() const { return corners_; }
 
-    /// Changes `velocity` (#C), which would move the corners in a step of dt [m/s]; returns whether there was anything to
-    /// change.
-    bool exchange(double dt, Field& velocity);
+    /// Changes `velocity` (#C), which would move the corners from x in a drift of dt [m/s]; returns whether there was
+    /// anything to change.
+    bool exchange(const Field& x, double dt, Field& velocity);
 
   private:
     class Pair;

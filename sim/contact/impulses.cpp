@@ -26,8 +26,11 @@ Impulses::Impulses(const CornerMap& map,
 
 void Impulses::add(const Touch& touch, std::span<const Share> shares) {
     Impulse impulse{touch, static_cast<int>(weights_.size())};
-    for (const auto& [corner, weight] : shares)
-        add_row(corner, weight, impulse.first);
+    if (shares.size() == 1)
+        add_row(shares[0]);
+    else
+        for (const Share& share : shares)
+            add_to_sum(share, impulse.first);
     impulse.last = static_cast<int>(weights_.size());
     Vec3p sum{};
     for (int k = impulse.first; k < impulse.last; ++k) {
@@ -44,14 +47,20 @@ void Impulses::add(const Touch& touch, std::span<const Share> shares) {
         weights_.resize(impulse.first);  // held on all sides
 }
 
-void Impulses::add_row(int corner, double factor, int first) {
-    map_.find_row(corner, row_);
+void Impulses::add_row(const Share& share) {
+    map_.find_row(share.corner, row_);
+    for (const auto& [i, w] : row_)
+        weights_.push_back({i, share.weight * w});
+}
+
+void Impulses::add_to_sum(const Share& share, int first) {
+    map_.find_row(share.corner, row_);
     for (const auto& [i, w] : row_) {
         if (place_[i] < first) {
             place_[i] = static_cast<int>(weights_.size());
             weights_.push_back({i, 0});
         }
-        weights_[place_[i]].weight += factor * w;
+        weights_[place_[i]].weight += share.weight * w;
     }
 }
 

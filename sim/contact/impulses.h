@@ -54,7 +54,8 @@ class Impulses {
         Vec3 hold{0, 0, 0};                            // across it [N s]
     };
 
-    void add_row(int corner, double factor, int first);
+    void add_row(const Share& share);
+    void add_to_sum(const Share& share, int first);
     double settle(Impulse& impulse, Field& q) const;
 
     Vec3p inverse_mass(int dof) const { return inverse_mass_[dof] * is_free_[dof]; }

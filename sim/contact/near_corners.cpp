@@ -53,7 +53,7 @@ void NearCorners::begin_step(const Field& x,
     for (const int k : all_)
         x_n_[k] = x[corners_[k]];
     const int n_colliders = static_cast<int>(far_.size());
-    double way = way_since_look(x);
+    double way = farthest([&](int k) { return x_n_[k] - looked_at_[k]; });
     for (int j = 0; j < n_colliders; ++j)
         if (!(least_gap(j, way, from[j]) > share_left * far_[j].gap)) {
             look(way, from, gap);

@@ -38,11 +38,12 @@ class NearCorners {
     /// Where corner k was at the start of the step.   [m]
     Vec3 start(int k) const { return unpadded(x_n_[k]); }
 
-    /// Those that may touch when the step ends with corners of the field at `at(corner)`: the near ones, or all.
-    template <class Position>
-    const std::vector<int>& touching(const Position& at) const {
-        const double way = farthest([&](int k) { return at(corners_[k]) - x_n_[k]; });
-        return way < free_way_ ? near_ : all_;
+    /// Those that may touch when the step ends with corners of the field as far from its start as way(corner, start): the
+    /// near ones, or all.   [m]
+    template <class Way>
+    const std::vector<int>& touching(const Way& way) const {
+        const double longest = farthest([&](int k) { return way(corners_[k], x_n_[k]); });
+        return longest < free_way_ ? near_ : all_;
     }
 
     /// Those that may be as near to collider j as they go in dt, seen from it: from x with velocities v (#C) while it goes

@@ -12,7 +12,7 @@ namespace sim {
 
 namespace {
 
-constexpr int point_chunk = 1024;
+constexpr int yielding_at_once = 64;
 
 /// sup Σ_a w'_a²/w_a of a spline, in 1/cells².
 double sharpest(Kernel kernel) {
@@ -24,21 +24,6 @@ double sharpest(Kernel kernel) {
         default:
             return std::numeric_limits<double>::infinity();
     }
-}
-
-Matrix3<double> matrix_of(const Gradient& gradient) {
-    Matrix3<double> result;
-    for (int k = 0; k < 9; ++k)
-        result.m[k] = gradient.column[k / 3][k % 3];
-    return result;
-}
-
-/// (1 + dt D) F.
-Matrix3<double> moved(const Matrix3<double>& F, const Gradient& D, double dt) {
-    Matrix3<double> result = product(matrix_of(D), F);
-    for (int k = 0; k < 9; ++k)
-        result.m[k] = F.m[k] + dt * result.m[k];
-    return result;
 }
 
 /// The number of a chunk's first batch: batches start at its first slave, and the last of a chunk may be short.
@@ -74,15 +59,35 @@ PointEnergy::PointEnergy(const CornerMap& map,
 }
 
 void PointEnergy::begin_step(const PointState& state) {
-    state_ = &state;
-    for (int p = 0; p < points_.size(); ++p) {
-        if (state.J_plastic[p] == J_of_moduli_[p] || !points_.is_snow(p))
-            continue;
-        J_of_moduli_[p] = state.J_plastic[p];
-        const double harder =
-            std::exp(points_.snow[points_.region[p]].hardening * (1 - state.J_plastic[p]));
-        mu_[p] = harder * points_.mu[p];
-        lambda_[p] = harder * points_.lambda[p];
+    start_ = state;
+    for (int p = 0; p < points_.size(); ++p)
+        harden(p);
+}
+
+void PointEnergy::harden(int p) {
+    if (start_.J_plastic[p] == J_of_moduli_[p] || !points_.is_snow(p))
+        return;
+    J_of_moduli_[p] = start_.J_plastic[p];
+    const double harder =
+        std::exp(points_.snow[points_.region[p]].hardening * (1 - start_.J_plastic[p]));
+    mu_[p] = harder * points_.mu[p];
+    lambda_[p] = harder * points_.lambda[p];
+}
+
+void PointEnergy::yield(const CornerMap::Slaves& at) {
+    int point[yielding_at_once];
+    for (int s = at.begin; s < at.end; s += yielding_at_once) {
+        const int n = std::min(yielding_at_once, at.end - s);
+        for (int k = 0; k < n; ++k)
+            point[k] = map_.slave_corner()[s + k] - first_corner_;
+        if (sim::yield(points_,
+                       point,
+                       n,
+                       F_next_.data(),
+                       start_.F.data(),
+                       start_.J_plastic.data()))
+            for (int k = 0; k < n; ++k)
+                harden(point[k]);
     }
 }
 
@@ -94,18 +99,20 @@ PointsOfSlaves PointEnergy::slaves() const {
             lambda_.data(),
             law_.data(),
             laws_,
-            state_->F.data()};
+            start_.F.data()};
 }
 
-double PointEnergy::add_gradient(const Field& q, double dt, Field& gradient) {
+template <class Deform>
+double PointEnergy::add_stresses(const Field& q, const Deform& deform, Field& gradient) {
     const PointsOfSlaves points = slaves();
     chunk_energy_.assign(map_.slaves_of(body_).chunk, 0);
     map_.add_through(
         body_,
         q,
         [&](const CornerMap::Slaves& at, Gradient* values) {
+            deform(points, at, values);
             chunk_energy_[at.chunk] =
-                take_stresses(points, {at.begin, at.end}, dt, values, F_next_.data());
+                take_stresses(points, {at.begin, at.end}, F_next_.data(), values);
         },
         gradient);
     double energy = 0;
@@ -114,13 +121,32 @@ double PointEnergy::add_gradient(const Field& q, double dt, Field& gradient) {
     return energy;
 }
 
+double PointEnergy::add_gradient(const Field& q, double dt, Field& gradient) {
+    return add_stresses(
+        q,
+        [&](const PointsOfSlaves& points, const CornerMap::Slaves& at, const Gradient* values) {
+            deform(points, {at.begin, at.end}, dt, values, F_next_.data());
+        },
+        gradient);
+}
+
+double PointEnergy::end_drift(const Field& way, Field& gradient) {
+    return add_stresses(
+        way,
+        [&](const PointsOfSlaves& points, const CornerMap::Slaves& at, const Gradient* values) {
+            deform(points, {at.begin, at.end}, 1, values, F_next_.data());
+            yield(at);
+        },
+        gradient);
+}
+
 void PointEnergy::add_start_gradient(Field& gradient) {
     const PointsOfSlaves points = slaves();
     map_.add_transposed(
         body_,
         CornerMap::Factor::Slope,
         [&](const CornerMap::Slaves& at, Gradient* values) {
-            take_start_stresses(points, {at.begin, at.end}, values);
+            take_stresses(points, {at.begin, at.end}, points.F_n, values);
         },
         gradient);
 }
@@ -163,22 +189,18 @@ void PointEnergy::add_diagonal(Field& diagonal) const {
         diagonal);
 }
 
-void PointEnergy::advance(const Field& q, double dt, PointState& state) {
+void PointEnergy::advance(const Field& q, double dt) {
+    const PointsOfSlaves points = slaves();
     map_.visit_gradients(
         body_, CornerMap::Factor::Slope, q, [&](const CornerMap::Slaves& at, Gradient* values) {
-            for (int s = at.begin; s < at.end; ++s) {
-                const int p = map_.slave_corner()[s] - first_corner_;
-                F_next_[p] = moved(state.F[p], values[s - at.begin], dt);
-            }
+            deform(points, {at.begin, at.end}, dt, values, F_next_.data());
+            yield(at);
         });
-    accept(state);
 }
 
 void PointEnergy::accept(PointState& state) {
     std::swap(state.F, F_next_);
-    for_chunks(points_.size(), point_chunk, [&](int begin, int end) {
-        yield(points_, begin, end, state);
-    });
+    std::swap(state.J_plastic, start_.J_plastic);
 }
 
 double PointEnergy::highest_frequency(Kernel kernel) const {

@@ -21,7 +21,7 @@ class PointEnergy : public GridEnergy {
                 double cell_size,
                 const MaterialPoints& points);
 
-    /// Takes F of the start of the step, and the moduli that snow has by now; `state` outlives the step.
+    /// Takes F of the start of the step, and the moduli that snow has by then.
     void begin_step(const PointState& state);
 
     double add_gradient(const Field& q, double dt, Field& gradient) override;
@@ -36,10 +36,14 @@ class PointEnergy : public GridEnergy {
     /// Adds ∂Φ/∂u at the start of the step, where nothing has moved, to `gradient` (#dofs) [N].
     void add_start_gradient(Field& gradient);
 
-    /// Moves F by the velocities of the step, and lets snow yield.
-    void advance(const Field& q, double dt, PointState& state);
+    /// As add_gradient() where a drift ends for good: snow yields there before stresses are taken, and Φ is that of what
+    /// is left.   way: of the nodes since the step began (#dofs) [m]
+    double end_drift(const Field& way, Field& gradient);
 
-    /// The same where q is that of the last add_gradient().
+    /// Moves F by the velocities of the step, and lets snow yield.
+    void advance(const Field& q, double dt);
+
+    /// What points remember from now on, after end_drift() or advance().
     void accept(PointState& state);
 
     /// A bound of the frequencies w that the grid can swing with, from moduli at rest and today's hardening: of one point's
@@ -56,11 +60,15 @@ class PointEnergy : public GridEnergy {
         int point = -1;
     };
 
-    /// Of the elastic F of the last add_gradient().
+    /// Of the elastic F where all was last taken to.
     SmallestJ smallest_trial_J() const;
 
   private:
     PointsOfSlaves slaves() const;
+    void harden(int p);
+    void yield(const CornerMap::Slaves& at);
+    template <class Deform>
+    double add_stresses(const Field& q, const Deform& deform, Field& gradient);
 
     const CornerMap& map_;
     int body_, first_corner_;
@@ -71,8 +79,9 @@ class PointEnergy : public GridEnergy {
     std::vector<double> mu_, lambda_;  // (#P) of this step [Pa]
     std::vector<double> J_of_moduli_;  // (#P) J_P that they are of: few points yield in a step
     double scale_ = 0;
-    const PointState* state_ = nullptr;
-    std::vector<Matrix3<double>> F_next_;    // (#P) of the last add_gradient()
+    // Of the start of the step, from where its motion leads to F_next_: what yields meanwhile yields there, too.
+    PointState start_;
+    std::vector<Matrix3<double>> F_next_;    // (#P) where all was last taken to
     std::vector<double> chunk_energy_;       // (#chunks)
     std::vector<PointStiffness> stiffness_;  // (#batches)
     std::vector<Lanes> weight_;                      // (#batches) [J]

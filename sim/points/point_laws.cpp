@@ -16,7 +16,6 @@ namespace {
 #define ALWAYS_INLINE [[gnu::always_inline]] inline
 
 struct Batch {
-    Matrix3<Lanes> F_n;
     alignas(64) Lanes volume, mu, lambda, law;
     unsigned laws;  // bit m set where a point of the body has model m
     int n;          // points; the lanes above have no volume and rest undeformed
@@ -35,25 +34,29 @@ struct Place {
     }
 };
 
-ALWAYS_INLINE void load(const PointsOfSlaves& points, const Place& at, Batch& batch) {
+ALWAYS_INLINE Matrix3<Lanes> load(const Matrix3<double>* matrices, const Place& at) {
     static const Matrix3<double> rest{{1, 0, 0, 0, 1, 0, 0, 0, 1}};
-    const Matrix3<double>* F_n[lane_count];
+    const Matrix3<double>* from[lane_count];
+    std::fill(from, from + lane_count, &rest);
+    for (int l = 0; l < at.n; ++l)
+        from[l] = &matrices[at.point[l]];
+    return load_lanes(from);
+}
+
+ALWAYS_INLINE void load(const PointsOfSlaves& points, const Place& at, Batch& batch) {
     batch.laws = points.laws;
     if (at.n < lane_count) {
         batch.volume = batch.lambda = Lanes{};
         batch.mu = uniform<Lanes>(1);
         batch.law = uniform<Lanes>(static_cast<double>(points.law[at.point[0]]));
-        std::fill(F_n + at.n, F_n + lane_count, &rest);
     }
     for (int l = 0; l < at.n; ++l) {
         const int p = at.point[l];
-        F_n[l] = &points.F_n[p];
         batch.volume[l] = points.volume[p];
         batch.mu[l] = points.mu[p];
         batch.lambda[l] = points.lambda[p];
         batch.law[l] = points.law[p];
     }
-    batch.F_n = load_lanes(F_n);
     batch.n = at.n;
 }
 
@@ -172,55 +175,51 @@ ALWAYS_INLINE void see_from_gradients(const Matrix3<Lanes>& F, const Lanes* C, F
     }
 }
 
-/// Ψ and V P F_nᵀ at F.
+/// Ψ and P at F.
 ALWAYS_INLINE Matrix3<Lanes> stresses(const Batch& batch, const Matrix3<Lanes>& F, Lanes& psi) {
     Matrix3<Lanes> P{};
     psi = Lanes{};
     take_law<NeoHookean>(batch, Model::NeoHookean, F, psi, P);
     take_law<StableNeoHookean>(batch, Model::StableNeoHookean, F, psi, P);
     take_law<FixedCorotated>(batch, Model::FixedCorotated, F, psi, P);
-    Matrix3<Lanes> A = product_transposed(P, batch.F_n);
-    for (int k = 0; k < 9; ++k)
-        A.m[k] = batch.volume * A.m[k];
-    return A;
+    return P;
 }
 
 }  // namespace
 
 SUPPLE_LANES
+void deform(const PointsOfSlaves& points,
+            const SlaveRange& range,
+            double dt,
+            const Gradient* values,
+            Matrix3<double>* F) {
+    for (int b = 0; b < range.n_batches(); ++b) {
+        const Place at(points, range, b);
+        const Matrix3<Lanes> D = load(values + lane_count * b, at.n);
+        store(moved(load(points.F_n, at), D, dt), at, F);
+    }
+}
+
+SUPPLE_LANES
 double take_stresses(const PointsOfSlaves& points,
                      const SlaveRange& range,
-                     double dt,
-                     Gradient* values,
-                     Matrix3<double>* F_next) {
+                     const Matrix3<double>* F,
+                     Gradient* values) {
     alignas(64) Lanes energy{}, psi;
     Batch batch;
     for (int b = 0; b < range.n_batches(); ++b) {
         const Place at(points, range, b);
         load(points, at, batch);
-        Gradient* const here = values + lane_count * b;
-        const Matrix3<Lanes> F = moved(batch.F_n, load(here, at.n), dt);
-        store(stresses(batch, F, psi), at.n, here);
-        store(F, at, F_next);
+        Matrix3<Lanes> P = stresses(batch, load(F, at), psi);
+        for (int k = 0; k < 9; ++k)
+            P.m[k] = batch.volume * P.m[k];
+        store(product_transposed(P, load(points.F_n, at)), at.n, values + lane_count * b);
         energy += batch.volume * psi;
     }
     double sum = 0;
     for (int l = 0; l < lane_count; ++l)
         sum += energy[l];
     return sum;
-}
-
-SUPPLE_LANES
-void take_start_stresses(const PointsOfSlaves& points,
-                         const SlaveRange& range,
-                         Gradient* values) {
-    alignas(64) Lanes psi;
-    Batch batch;
-    for (int b = 0; b < range.n_batches(); ++b) {
-        const Place at(points, range, b);
-        load(points, at, batch);
-        store(stresses(batch, batch.F_n, psi), at.n, values + lane_count * b);
-    }
 }
 
 SUPPLE_LANES
@@ -233,15 +232,17 @@ void take_stiffness(const PointsOfSlaves& points,
                     Lanes* weight) {
     Batch batch;
     for (int b = 0; b < range.n_batches(); ++b) {
-        load(points, Place(points, range, b), batch);
-        const Matrix3<Lanes> F = moved(batch.F_n, load(values + lane_count * b, batch.n), dt);
+        const Place at(points, range, b);
+        load(points, at, batch);
+        const Matrix3<Lanes> F_n = load(points.F_n, at),
+                             F = moved(F_n, load(values + lane_count * b, at.n), dt);
         alignas(64) Lanes C[packed_size] = {};
         take_law_stiffness<NeoHookean>(batch, Model::NeoHookean, F, C);
         take_law_stiffness<StableNeoHookean>(batch, Model::StableNeoHookean, F, C);
         take_law_stiffness<FixedCorotated>(batch, Model::FixedCorotated, F, C);
         if (projected)
             project(batch, F, C);
-        see_from_gradients(batch.F_n, C, stiffness[b].A);
+        see_from_gradients(F_n, C, stiffness[b].A);
         weight[b] = batch.volume * batch.mu;
     }
 }

@@ -30,18 +30,18 @@ struct PointStiffness {
     FloatLanes A[45];  // upper triangle, see packed()
 };
 
-/// With F = (1 + dt ∇v) F_n from the gradients in `values`, sets F_next (#P) to F, replaces `values` by V P(F) F_nᵀ and
-/// returns Σ V Ψ(F) [J], +infinity where a law forbids F.
+/// F = (1 + dt ∇v) F_n from the gradients in `values`.   F (#P)
+void deform(const PointsOfSlaves& points,
+            const SlaveRange& range,
+            double dt,
+            const Gradient* values,
+            Matrix3<double>* F);
+
+/// Sets `values` to V P(F) F_nᵀ and returns Σ V Ψ(F) [J], +infinity where a law forbids F.   F (#P)
 double take_stresses(const PointsOfSlaves& points,
                      const SlaveRange& range,
-                     double dt,
-                     Gradient* values,
-                     Matrix3<double>* F_next);
-
-/// The same at the start of the step, F = F_n, whatever `values` held.
-void take_start_stresses(const PointsOfSlaves& points,
-                         const SlaveRange& range,
-                         Gradient* values);
+                     const Matrix3<double>* F,
+                     Gradient* values);
 
 /// Stiffness at F = (1 + dt ∇v) F_n of each batch, and V mu of its points [J]; `project`: positive semi-definite.
 void take_stiffness(const PointsOfSlaves& points,

@@ -45,7 +45,7 @@ struct Cubes {
     }
 
     bool exchange(const sim::Friction& friction) {
-        return contact(friction).exchange(dt, velocity);
+        return contact(friction).exchange(x, dt, velocity);
     }
 
     Vec3 momentum(int b) const {
@@ -157,7 +157,7 @@ TEST_CASE("a block that slides on a plate is pushed off its face, not along it")
     const double mu = GENERATE(0.0, 0.1);
     sim::GridContact({{{0, plate}, {plate, end}, s, {false, mu}}},
                      {x, mass, volume, outside, is_free})
-        .exchange(dt, velocity);
+        .exchange(x, dt, velocity);
     Vec3 impulse = Vec3::Zero();
     for (int c = plate; c < end; ++c)
         impulse += sim::unpadded(velocity[c] - before[c]);

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <numeric>
 
 namespace {
 
@@ -30,7 +31,11 @@ TEST_CASE("stretches end within the limits, those inside stay, and the volume is
         const Vec3 before = sim::signed_svd(F).sigma;
         sim::Matrix3<double> elastic = matrix(F);
         double J_plastic = 0.9;
-        sim::yield(snow, elastic, J_plastic);
+        const Mat3 F_n = Mat3::Identity() + 0.1 * Mat3::NullaryExpr([&] {
+                                                return tests::between(random, -1, 1);
+                                            });
+        sim::Matrix3<double> start = matrix(F_n);
+        sim::yield(snow, elastic, start, J_plastic);
         const Eigen::Map<const Mat3> after(elastic.m);
         const Vec3 sigma = sim::signed_svd(after).sigma;
         CHECK(sigma.minCoeff() >= low - 1e-14);
@@ -44,14 +49,18 @@ TEST_CASE("stretches end within the limits, those inside stay, and the volume is
         // The frame of the stretches turns not at all: F_E F⁻¹ is symmetric where F = U σ Vᵀ, F_E = U σ' Vᵀ.
         const Mat3 change = after * F.inverse();
         CHECK((change - change.transpose()).norm() <= 1e-12 * change.norm());
+        // What led from F_n to F leads from F_n Y to F Y.
+        const Mat3 motion = F * F_n.inverse();
+        CHECK((motion * Eigen::Map<const Mat3>(start.m) - after).norm()
+              <= 1e-12 * motion.norm());
     }
     CHECK(n_inside > 100);
 }
 
 TEST_CASE("a point turned inside out comes back with a positive volume") {
-    sim::Matrix3<double> F = matrix(Vec3(1.1, 0.9, -0.5).asDiagonal());
+    sim::Matrix3<double> F = matrix(Vec3(1.1, 0.9, -0.5).asDiagonal()), F_n = F;
     double J_plastic = 1;
-    sim::yield({}, F, J_plastic);
+    sim::yield({}, F, F_n, J_plastic);
     CHECK(sim::determinant(F) > 0);
     CHECK(J_plastic > 0);
     CHECK(J_plastic * sim::determinant(F) == Approx(0.495));
@@ -82,18 +91,31 @@ TEST_CASE("points yield side by side as each of them alone") {
         together.J_plastic[p] = tests::between(random, 0.8, 1.2);
     }
     const sim::PointState before = together;
-    sim::PointState alone = together;
-    sim::yield(points, 2, n, together);
+    sim::PointState alone = together, together_n(n), alone_n(n);
+    std::vector<int> yielding(n - 2);
+    std::iota(yielding.rbegin(), yielding.rend(), 2);
+    sim::yield(points,
+               yielding.data(),
+               n - 2,
+               together.F.data(),
+               together_n.F.data(),
+               together.J_plastic.data());
     int n_yielded = 0;
     for (int p = 2; p < n; ++p) {
         if (points.is_snow(p))
-            sim::yield(points.snow[points.region[p]], alone.F[p], alone.J_plastic[p]);
+            sim::yield(points.snow[points.region[p]],
+                       alone.F[p],
+                       alone_n.F[p],
+                       alone.J_plastic[p]);
         const Eigen::Map<const Mat3> is(together.F[p].m), wanted(alone.F[p].m),
             was(before.F[p].m);
         // The nearer two stretches come to cancel, the less is sure about the frame in between.
         const Vec3 sigma = sim::signed_svd(was).sigma;
         const double gap = std::max(sigma[1] + sigma[2], 1e-3);
         CHECK((is - wanted).norm() <= 1e-13 / gap);
+        const Eigen::Map<const Mat3> is_n(together_n.F[p].m), wanted_n(alone_n.F[p].m);
+        if (sigma.cwiseAbs().minCoeff() > 0.1)
+            CHECK((is_n - wanted_n).norm() <= 1e-12 / gap);
         CHECK(together.J_plastic[p] == Approx(alone.J_plastic[p]).epsilon(1e-13).margin(1e-15));
         if (!points.is_snow(p))
             CHECK(is == was);
