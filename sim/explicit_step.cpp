@@ -126,7 +126,7 @@ void Stepper::first_kick(const State& state) {
 }
 
 bool Stepper::take_drifts(const State& state, double length) {
-    begin_contact_on_grid(state.x);
+    begin_contact(state.x);
     if (!drift_with_contact(state, state.x, state.time, length))
         return false;
     inner_gradient_.assign(prescribed_.corners.size(), Vec3p{});
@@ -150,9 +150,9 @@ bool Stepper::drift_with_contact(const State& state,
                                  const Field& x,
                                  double time,
                                  double length) {
-    map_.apply_and_move(q_moved_, moved_, x, length, x_end_);
-    if (exchange_contact(x, length))
-        drift(x, length);
+    moved_.resize(x.size());
+    map_.apply(q_moved_, moved_);
+    restrain_on_grid(x, length);
     if (colliders_.largest_step(x, moved_, time, length) < length) {
         summary_.termination = Termination::Unstable;  // a corner might pass through a collider
         return false;
@@ -161,6 +161,7 @@ bool Stepper::drift_with_contact(const State& state,
     // Many drifts under one map take more from a hit on slaved corners than as many under their own (test_drifts).
     const bool hits = restrain_by_colliders(x, length) > hard_hit && !map_.is_identity();
     quiet_drifts_ = presses || hits ? 0 : quiet_drifts_ + 1;
+    drift(x, length);
     return true;
 }
 
@@ -223,17 +224,11 @@ double Stepper::restrain_by_colliders(const Field& x, double length) {
     double deepest = 0;
     for (const ColliderContact::Stop& stop : stops)
         deepest = std::max(deepest, stop.depth);
-    Impulses impulses(map_, inverse_mass_, potential_.step().is_free, length);
+    impulses_->begin_drift(length);
     for (int pass = 0; !stops.empty() && pass < contact_passes; ++pass) {
         for (const auto& [corner, depth, touch] : stops)
-            impulses.add(touch, {{Impulses::Share{corner, 1}}});
-        Field& change = q_change_;
-        change = q_moved_;
-        impulses.settle(q_moved_);
-        for (std::size_t i = 0; i < change.size(); ++i)
-            change[i] = q_moved_[i] - change[i];
-        map_.add_applied(change, moved_);
-        drift(x, length);
+            impulses_->add(touch, impulses_->row_of(corner));
+        impulses_->settle(q_moved_, moved_);
         // What the impulses have brought inside, or still is where the collider's surface turns.
         stops = colliders_.stops(x, moved_, length, depth_tolerance);
     }
@@ -243,6 +238,7 @@ double Stepper::restrain_by_colliders(const Field& x, double length) {
 bool Stepper::restrain_by_surfaces(const State& state, double dt) {
     if (surfaces_.empty())
         return false;
+    drift(state.x, dt);
     surfaces_.begin_step({state.x, state.v, state.top_speed, state.contacts}, x_end_, dt);
     if (surfaces_.finds_none())
         return false;
@@ -253,9 +249,7 @@ bool Stepper::restrain_by_surfaces(const State& state, double dt) {
             && (surfaces_.is_linear_enough(x_end_, way, depth_tolerance)
                 || surfaces_.relinearize(x_end_) < depth_tolerance))
             return true;
-        Impulses impulses(map_, inverse_mass_, potential_.step().is_free, dt);
-        const std::optional<double> change =
-            surfaces_.restrain(map_, impulses, q_moved_, moved_);
+        const std::optional<double> change = surfaces_.restrain(*impulses_, q_moved_, moved_);
         if (!change && pass == 0)
             return false;
         way = dt * change.value_or(0);

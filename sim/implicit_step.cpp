@@ -112,8 +112,8 @@ void Stepper::end_implicit(State& state, double dt) {
                / dt_hat_;
     });
     keep_inner_force(state);
-    begin_contact_on_grid(state.x);
-    exchange_contact(state.x, dt_hat_);
+    begin_contact(state.x);
+    restrain_on_grid(state.x, dt_hat_);
     drift(potential_.step().x_n, dt_hat_);
     end_on_targets();
     commit(state, dt);

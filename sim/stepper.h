@@ -100,9 +100,8 @@ class Stepper {
 
     // step_contact.cpp: contact after the velocities are known
     std::vector<GridPair> pairs_on_grid() const;
-    void begin_contact_on_grid(const Field& x);
-    bool exchange_contact(const Field& x, double dt);
-    void move_through_grid(const std::vector<int>& corners, Field& wanted);
+    void begin_contact(const Field& x);
+    bool restrain_on_grid(const Field& x, double dt);
     void drift(const Field& x_n, double length);
 
     // point_step.cpp: what points and APIC add to a step
@@ -182,7 +181,6 @@ class Stepper {
     // (#dofs) Tᵀ f; explicit steps: of domains with their stress, and at nodes alone   [N]
     Field node_force_;
     Field q_moved_;   // (#dofs) what moved_ comes from, but for a rigid shift [m/s]
-    Field q_change_;  // (#dofs) what a contact adds to it [m/s]
 
     /// A degree of freedom with prescribed components, and their velocity [m/s].
     struct PrescribedDof {
@@ -209,6 +207,8 @@ class Stepper {
     Field x_drift_, gradient_before_;  // where its last drift begins, of several (#C) [m], [N]
     Field inner_gradient_;  // Σ over what lies between its drifts, at prescribed corners [N]
     Field inner_at_nodes_;  // Σ over its drifts, at pinned nodes [N]
+    // Of a step, under its map.
+    std::optional<Impulses> impulses_;
     std::optional<GridContact> grid_contact_;
 };
 

@@ -9,17 +9,20 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace sim {
 
 namespace {
 
-constexpr int contact_sweeps = 3;
+constexpr int most_rounds = 4;
 constexpr double seen_cells =
     2.5;                      // a node is up to one off a body, and sees the other for 1.5
 constexpr int n_normals = 3;  // of both bodies together, and of each
 constexpr double much_less = 2;
+// Of a body at a node, in corners. One that hardly has a part in it would be held there as if it were all of it.
+constexpr double least_share = 0.01;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A corner's share of a node that both bodies share.
@@ -28,11 +31,16 @@ struct Share {
     double weight = 0;
 };
 
+/// The volume of one body at a node.
+struct Filled {
+    double volume = 0;  // [m³]
+    Vec3p gradient{};   // of it [m²]
+};
+
 /// One body's share of a node.
 struct Side {
+    double share = 0;  // Σ w
     double mass = 0;
-    double volume = 0;  // [m³]
-    Vec3p gradient{};   // of the volume [m²]
     Vec3p momentum{};
     Vec3p reach{};  // largest distance along each normal, outward
 };
@@ -41,7 +49,9 @@ struct Node {
     std::array<Side, 2> side;
     std::array<Vec3p, 3>
         normals;  // out of the first body: entry n of [k] is component k of the n-th
-    std::array<Vec3p, 2> dv{};
+    bool is_pushed = false;  // in this drift
+
+    bool is_shared() const { return std::min(side[0].share, side[1].share) > least_share; }
 
     Vec3 normal(int n) const { return {normals[0][n], normals[1][n], normals[2][n]}; }
 };
@@ -72,7 +82,7 @@ std::pair<std::array<long, 3>, Vec3p> place(const Vec3p& x, double h, double shi
 class GridContact::Pair {
   public:
     Pair(const GridPair& pair, const ContactFields& fields, const PaddedBounds& where)
-        : fields_(fields), friction_(pair.friction) {
+        : fields_(fields), friction_(pair.friction), cell_size_(pair.cell_size) {
         std::array<std::vector<int>, 2> corners;
         for (int s = 0; s < 2; ++s) {
             const ContactBody& body = s == 0 ? pair.first : pair.second;
@@ -80,60 +90,53 @@ class GridContact::Pair {
                 if (where.holds(fields.x[c]))
                     corners[s].push_back(c);
         }
-        const double h = pair.cell_size;
-        NodeBox numbers(where.low, where.high, h);
-        number_shared(corners, h, numbers);
+        NodeBox numbers(where.low, where.high, cell_size_);
+        number_shared(corners, numbers);
         if (nodes_.empty())
             return;
+        rows_.resize(nodes_.size());
+        std::vector<std::array<Filled, 2>> filled(nodes_.size());
         for (int s = 0; s < 2; ++s)
             for (const int c : corners[s]) {
-                add_shares(s, c, h, numbers);
-                add_gradient(s, c, h, numbers);
+                add_shares(s, c, numbers);
+                add_gradient(s, c, numbers, filled);
             }
-        for (Node& node : nodes_)
-            find_normals(node);
+        for (std::size_t n = 0; n < nodes_.size(); ++n)
+            find_normals(filled[n], nodes_[n]);
     }
 
     bool is_empty() const { return nodes_.empty(); }
 
-    /// Appends the corners that see a shared node.
-    void list_corners(std::vector<int>& corners) const {
-        for (const std::vector<Share>& shares : shares_)
-            for (const Share& share : shares)
-                if (corners.empty() || corners.back() != share.corner)
-                    corners.push_back(share.corner);
+    void begin_drift() {
+        for (Node& node : nodes_)
+            node.is_pushed = false;
     }
 
-    /// Returns whether the bodies have met anywhere; if not, nothing has changed.
-    bool sweep(const Field& x_n, double dt, Field& velocity) {
-        start_sweep();
-        for (int s = 0; s < 2; ++s) {
-            const double outward = s == 0 ? 1 : -1;
-            for (const auto& [c, n, weight] : shares_[s]) {
-                Node& node = nodes_[n];
-                Side& side = node.side[s];
-                side.momentum += weight * fields_.mass[c][0] * velocity[c];
-                const Vec3p x = x_n[c] + dt * velocity[c];
-                const Vec3p along =
-                    node.normals[0] * x[0] + node.normals[1] * x[1] + node.normals[2] * x[2];
-                side.reach = larger(side.reach, outward * along - fields_.outside[c]);
-            }
-        }
+    /// Adds an impulse wherever the bodies would meet that has none yet; returns whether they do anywhere.
+    bool add_impulses(const Field& x, double dt, const Field& v, Impulses& impulses) {
+        see(x, dt, v);
         bool have_met = false;
-        for (Node& node : nodes_)
-            have_met |= exchange(node, friction_);
-        if (have_met)
-            for (int s = 0; s < 2; ++s)
-                for (const auto& [c, n, weight] : shares_[s])
-                    velocity[c] += weight * nodes_[n].dv[s] * fields_.is_free[c];
+        for (std::size_t n = 0; n < nodes_.size(); ++n) {
+            Node& node = nodes_[n];
+            const auto& [a, b] = node.side;
+            if (node.is_pushed || !node.is_shared())
+                continue;
+            const Vec3 normal = least_overlap(node);
+            if (!(unpadded(a.momentum / a.mass - b.momentum / b.mass).dot(normal) > 0))
+                continue;
+            if (rows_[n].last == rows_[n].first)
+                rows_[n] = impulses.row_of(shares_of(static_cast<int>(n)));
+            impulses.add({normal, 0, cell_size_, friction_}, rows_[n]);
+            node.is_pushed = have_met = true;
+        }
         return have_met;
     }
 
   private:
     /// visit(node's number, weight) of the eight nodes of a corner's cell that it has a part in.
     template <class Visit>
-    static void for_linear(const Vec3p& x, double h, NodeBox& numbers, const Visit& visit) {
-        const auto [base, t] = place(x, h, 0);
+    void for_linear(int corner, NodeBox& numbers, const Visit& visit) const {
+        const auto [base, t] = place(fields_.x[corner], cell_size_, 0);
         for (int a = 0; a < 8; ++a) {
             const int i = a & 1, j = a >> 1 & 1, k = a >> 2;
             const double weight =
@@ -143,16 +146,14 @@ class GridContact::Pair {
         }
     }
 
-    void number_shared(const std::array<std::vector<int>, 2>& corners,
-                       double h,
-                       NodeBox& numbers) {
+    void number_shared(const std::array<std::vector<int>, 2>& corners, NodeBox& numbers) {
         constexpr int of_first = -2;
         for (const int c : corners[0])
             if (fields_.mass[c][0] > 0)
-                for_linear(fields_.x[c], h, numbers, [&](int& n, double) { n = of_first; });
+                for_linear(c, numbers, [&](int& n, double) { n = of_first; });
         for (const int c : corners[1])
             if (fields_.mass[c][0] > 0)
-                for_linear(fields_.x[c], h, numbers, [&](int& n, double) {
+                for_linear(c, numbers, [&](int& n, double) {
                     if (n != of_first)
                         return;
                     n = static_cast<int>(nodes_.size());
@@ -160,31 +161,35 @@ class GridContact::Pair {
                 });
     }
 
-    void add_shares(int s, int c, double h, NodeBox& numbers) {
-        for_linear(fields_.x[c], h, numbers, [&](int n, double weight) {
+    void add_shares(int s, int c, NodeBox& numbers) {
+        for_linear(c, numbers, [&](int n, double weight) {
             if (n < 0)
                 return;
             shares_[s].push_back({c, n, weight});
+            nodes_[n].side[s].share += weight;
             nodes_[n].side[s].mass += weight * fields_.mass[c][0];
         });
     }
 
     /// By quadratic splines: the slope of a linear one jumps where a corner passes a node, and a lattice that lies on the
     /// grid does so at every breath.
-    void add_gradient(int s, int c, double h, NodeBox& numbers) {
+    void add_gradient(int s,
+                      int c,
+                      NodeBox& numbers,
+                      std::vector<std::array<Filled, 2>>& filled) const {
         using Quadratic = Spline<2>;
-        const auto [base, t] = place(fields_.x[c], h, Quadratic::shift);
+        const auto [base, t] = place(fields_.x[c], cell_size_, Quadratic::shift);
         Vec3p w[Quadratic::n], slope[Quadratic::n];
         Quadratic::weights(t, w);
         Quadratic::slopes(t, slope);
-        const double volume = fields_.volume[c], scale = volume / h;
+        const double volume = fields_.volume[c], scale = volume / cell_size_;
         for (int k = 0; k < Quadratic::n; ++k)
             for (int j = 0; j < Quadratic::n; ++j)
                 for (int i = 0; i < Quadratic::n; ++i) {
                     const int n = numbers(base[0] + i, base[1] + j, base[2] + k);
                     if (n < 0)
                         continue;
-                    Side& side = nodes_[n].side[s];
+                    Filled& side = filled[n][s];
                     side.volume += volume * w[i][0] * w[j][1] * w[k][2];
                     side.gradient += scale
                                      * Vec3p{slope[i][0] * w[j][1] * w[k][2],
@@ -196,8 +201,8 @@ class GridContact::Pair {
 
     /// A weight grows as its corner nears the node: on the whole out of the body. At its rim the gradient of a body leans to
     /// its side. Where rims of both meet their mean does not; where only one ends, the other knows the face that they share.
-    static void find_normals(Node& node) {
-        const auto& [a, b] = node.side;
+    static void find_normals(const std::array<Filled, 2>& filled, Node& node) {
+        const auto& [a, b] = filled;
         const Vec3 out_of_first = unpadded(a.gradient) / a.volume,
                    into_second = -unpadded(b.gradient) / b.volume;
         const std::array<Vec3, n_normals> normals{
@@ -206,6 +211,55 @@ class GridContact::Pair {
             const Vec3 normal = normals[n].norm() > 0 ? normals[n].normalized() : Vec3::Zero();
             for (int k = 0; k < 3; ++k)
                 node.normals[k][n] = normal[k];
+        }
+    }
+
+    /// What p - o, the second body from the first, is at a node: the mean velocities of their corners.
+    std::vector<Impulses::Share> shares_of(int n) {
+        std::vector<Impulses::Share> result;
+        for (int s = 0; s < 2; ++s) {
+            if (at_node_[s].empty())
+                sort_shares(s);
+            const double outward = s == 0 ? -1 : 1;
+            for (int k = first_at_node_[s][n]; k < first_at_node_[s][n + 1]; ++k) {
+                const auto& [c, node, weight] = shares_[s][at_node_[s][k]];
+                result.push_back(
+                    {c, outward * weight * fields_.mass[c][0] / nodes_[n].side[s].mass});
+            }
+        }
+        return result;
+    }
+
+    void sort_shares(int s) {
+        std::vector<int>&first = first_at_node_[s], &sorted = at_node_[s];
+        first.assign(nodes_.size() + 2, 0);
+        for (const Share& share : shares_[s])
+            ++first[share.node + 2];
+        std::partial_sum(first.begin(), first.end(), first.begin());
+        sorted.resize(shares_[s].size());
+        // Each first moves on to where the next node begins.
+        for (std::size_t k = 0; k < sorted.size(); ++k)
+            sorted[first[shares_[s][k].node + 1]++] = static_cast<int>(k);
+    }
+
+    /// Where the bodies would be by the end of the drift.
+    void see(const Field& x, double dt, const Field& v) {
+        for (Node& node : nodes_)
+            for (Side& side : node.side) {
+                side.momentum = Vec3p{};
+                side.reach = Vec3p{} - infinity;
+            }
+        for (int s = 0; s < 2; ++s) {
+            const double outward = s == 0 ? 1 : -1;
+            for (const auto& [c, n, weight] : shares_[s]) {
+                Node& node = nodes_[n];
+                Side& side = node.side[s];
+                side.momentum += weight * fields_.mass[c][0] * v[c];
+                const Vec3p end = x[c] + dt * v[c];
+                const Vec3p along = node.normals[0] * end[0] + node.normals[1] * end[1]
+                                    + node.normals[2] * end[2];
+                side.reach = larger(side.reach, outward * along - fields_.outside[c]);
+            }
         }
     }
 
@@ -230,41 +284,14 @@ class GridContact::Pair {
         return best;
     }
 
-    void start_sweep() {
-        for (Node& node : nodes_) {
-            for (Side& side : node.side) {
-                side.momentum = Vec3p{};
-                side.reach = Vec3p{} - infinity;
-            }
-            node.dv.fill(Vec3p{});
-        }
-    }
-
-    /// Returns whether they meet there.
-    static bool exchange(Node& node, const Friction& friction) {
-        const auto& [a, b] = node.side;
-        const Vec3 normal = least_overlap(node);
-        const Vec3 relative = unpadded(a.momentum / a.mass - b.momentum / b.mass);
-        const double approach = relative.dot(normal);
-        if (approach <= 0)
-            return false;
-        Vec3 change = approach * normal;
-        const Vec3 slip = relative - change;
-        const double speed = slip.norm();
-        if (speed > 0)
-            change +=
-                (friction.stick ? 1.0 : std::min(1.0, friction.coefficient * approach / speed))
-                * slip;
-        const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
-        node.dv[0] = padded(-reduced_mass / a.mass * change);
-        node.dv[1] = padded(reduced_mass / b.mass * change);
-        return true;
-    }
-
     const ContactFields& fields_;
     Friction friction_;
+    double cell_size_;
     std::array<std::vector<Share>, 2> shares_;
     std::vector<Node> nodes_;
+    // Shares sorted by node, and where those of a node begin; of use where the bodies have met.
+    std::array<std::vector<int>, 2> at_node_, first_at_node_;
+    std::vector<Impulses::Row> rows_;  // (#nodes) there
 };
 
 GridContact::GridContact(const std::vector<GridPair>& pairs, const ContactFields& corners)
@@ -276,13 +303,9 @@ GridContact::GridContact(const std::vector<GridPair>& pairs, const ContactFields
         if (where.is_empty())
             continue;
         Pair made(pair, fields_, where);
-        if (made.is_empty())
-            continue;
-        made.list_corners(corners_);
-        pairs_.push_back(std::move(made));
+        if (!made.is_empty())
+            pairs_.push_back(std::move(made));
     }
-    std::sort(corners_.begin(), corners_.end());
-    corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
 }
 
 GridContact::~GridContact() = default;
@@ -291,11 +314,20 @@ bool GridContact::is_empty() const {
     return pairs_.empty();
 }
 
-bool GridContact::exchange(const Field& x, double dt, Field& velocity) {
-    bool have_met = false;
+bool GridContact::restrain(Impulses& impulses, const Field& x, double dt, Field& q, Field& v) {
+    impulses.begin_drift(dt);
     for (Pair& pair : pairs_)
-        for (int k = 0; k < contact_sweeps && pair.sweep(x, dt, velocity); ++k)
-            have_met = true;
+        pair.begin_drift();
+    bool have_met = false;
+    for (int round = 0; round < most_rounds; ++round) {
+        bool meet = false;
+        for (Pair& pair : pairs_)
+            meet |= pair.add_impulses(x, dt, v, impulses);
+        if (!meet)
+            break;
+        have_met = true;
+        impulses.settle(q, v);
+    }
     return have_met;
 }
 

@@ -1,7 +1,8 @@
-// Contact between bodies on a background grid: an exchange of momentum after the solve.
+// Contact between bodies on a background grid: impulses after the solve.
 #pragma once
 
 #include "sim/base/field.h"
+#include "sim/contact/impulses.h"
 #include "sim/scene.h"
 
 #include <vector>
@@ -26,14 +27,13 @@ struct ContactFields {
     const Field& mass;                   // [kg]
     const std::vector<double>& volume;   // at rest [m³]
     const std::vector<double>& outside;  // distance out of the body's surface at rest [m]
-    const Field& is_free;                // 1 in free components, 0 in prescribed ones
 };
 
 /// All corners of a pair, free ones too, deposit mass and momentum on a grid. At a node where two bodies are
 /// present, approach each other, and overlap along the normal by the end of the step (largest n·x of the one against
-/// smallest of the other), they exchange the impulse m1 m2 / (m1 + m2) times the approach, with Coulomb friction; each
-/// corner gets Σ_i w_i dv_i back, so that momentum is exact. Pair after pair, up to `contact_sweeps` times or until
-/// nothing meets.
+/// smallest of the other), impulses end the approach, with Coulomb friction. They act on the degrees of freedom: what is
+/// asked of a body at a node is Σ_c w_c m_c v_c / Σ_c w_c m_c of its corners, v_c = T q, and what it gets goes back by the same
+/// weights, so that momentum is exact. All that meet are settled together (Impulses), and what these bring together then.
 ///
 /// The normal is that of g1/V1 - g2/V2, with V = Σ_c V_c w_ic of a body and g its gradient, by quadratic splines; or of g1 or
 /// -g2 alone where along it the bodies overlap by much less. At the rim of one body the mean leans: a block that slides would
@@ -46,8 +46,8 @@ struct ContactFields {
 /// with a face on a face get 0.03 edges into each other at a fifth of the speed of waves, 0.3 at that speed; a rim between
 /// two rows of the other's corners 0.3 to 0.5, and 1.1. Contact between surfaces keeps to 0.02.
 ///
-/// Holds for one step, of several drifts where the map T serves for as many: `corners` must stay as they are as long as it
-/// lives.
+/// Holds for one step, of several drifts where the map T serves for as many: map and `corners` must stay as they are as long
+/// as it lives.
 class GridContact {
   public:
     /// Throws Error(Diverged) where two bodies spread over more cells than can be held.
@@ -57,18 +57,14 @@ class GridContact {
     /// Whether no two bodies are near each other.
     bool is_empty() const;
 
-    /// Those that an exchange may change: which see a node that two bodies share. Each once, ascending.
-    const std::vector<int>& corners() const { return corners_; }
-
-    /// Changes `velocity` (#C), which would move the corners from x in a drift of dt [m/s]; returns whether there was
-    /// anything to change.
-    bool exchange(const Field& x, double dt, Field& velocity);
+    /// Changes velocities q of the degrees of freedom (#dofs), and v = T q (#C), which would move the corners from x in a
+    /// drift of dt [m/s]; returns whether bodies meet. `impulses` are the same as long as it lives.
+    bool restrain(Impulses& impulses, const Field& x, double dt, Field& q, Field& v);
 
   private:
     class Pair;
     ContactFields fields_;
     std::vector<Pair> pairs_;
-    std::vector<int> corners_;
 };
 
 }  // namespace sim

@@ -16,55 +16,66 @@ constexpr int most_sweeps = 100;
 
 Impulses::Impulses(const CornerMap& map,
                    const std::vector<double>& inverse_mass,
-                   const Field& is_free,
-                   double dt)
+                   const Field& is_free)
     : map_(map),
       inverse_mass_(inverse_mass),
       is_free_(is_free),
-      dt_(dt),
+      row_of_corner_(map.dof_of_corner().size()),
       place_(map.n_dofs(), -1) {}
 
-void Impulses::add(const Touch& touch, std::span<const Share> shares) {
-    Impulse impulse{touch, static_cast<int>(weights_.size())};
-    if (shares.size() == 1)
-        add_row(shares[0]);
-    else
-        for (const Share& share : shares)
-            add_to_sum(share, impulse.first);
-    impulse.last = static_cast<int>(weights_.size());
+void Impulses::begin_drift(double dt) {
+    dt_ = dt;
+    impulses_.clear();
+}
+
+Impulses::Row Impulses::row_of(int corner) {
+    Row& row = row_of_corner_[corner];
+    if (row.last == row.first)
+        row = row_of({{Share{corner, 1}}});
+    return row;
+}
+
+Impulses::Row Impulses::row_of(std::span<const Share> shares) {
+    const int first = static_cast<int>(weights_.size());
+    for (const auto& [corner, factor] : shares) {
+        map_.find_row(corner, row_);
+        for (const auto& [i, w] : row_) {
+            if (place_[i] < 0) {
+                place_[i] = static_cast<int>(weights_.size());
+                weights_.push_back({i, 0});
+            }
+            weights_[place_[i]].weight += factor * w;
+        }
+    }
+    const Row row{first, static_cast<int>(weights_.size())};
+    for (int k = row.first; k < row.last; ++k)
+        place_[weights_[k].dof] = -1;
+    return row;
+}
+
+void Impulses::add(const Touch& touch, const Row& row) {
+    Impulse impulse{touch, row};
     Vec3p sum{};
-    for (int k = impulse.first; k < impulse.last; ++k) {
+    for (int k = row.first; k < row.last; ++k) {
         const auto& [i, w] = weights_[k];
         sum += w * w * inverse_mass(i);
-        place_[i] = -1;
     }
     const Vec3 inverse = unpadded(sum);
     impulse.inverse_along = touch.normal.cwiseAbs2().dot(inverse);
     impulse.inverse_across = inverse.maxCoeff();
-    if (impulse.inverse_along > 0)
+    if (impulse.inverse_along > 0)  // else held on all sides
         impulses_.push_back(impulse);
-    else
-        weights_.resize(impulse.first);  // held on all sides
 }
 
-void Impulses::add_row(const Share& share) {
-    map_.find_row(share.corner, row_);
-    for (const auto& [i, w] : row_)
-        weights_.push_back({i, share.weight * w});
+void Impulses::settle(Field& q, Field& v) {
+    change_ = q;
+    sweep(q);
+    for (std::size_t i = 0; i < q.size(); ++i)
+        change_[i] = q[i] - change_[i];
+    map_.add_applied(change_, v);
 }
 
-void Impulses::add_to_sum(const Share& share, int first) {
-    map_.find_row(share.corner, row_);
-    for (const auto& [i, w] : row_) {
-        if (place_[i] < first) {
-            place_[i] = static_cast<int>(weights_.size());
-            weights_.push_back({i, 0});
-        }
-        weights_[place_[i]].weight += share.weight * w;
-    }
-}
-
-void Impulses::settle(Field& q) {
+void Impulses::sweep(Field& q) {
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {
         double change = 0;
         for (Impulse& impulse : impulses_)
@@ -78,7 +89,8 @@ void Impulses::settle(Field& q) {
 /// held by friction. Returns by how much its depth has changed, in domain edges.
 double Impulses::settle(Impulse& impulse, Field& q) const {
     const auto& [normal, gap, edge, friction, carried] = impulse.touch;
-    const std::span weights(weights_.begin() + impulse.first, weights_.begin() + impulse.last);
+    const std::span weights(weights_.begin() + impulse.row.first,
+                            weights_.begin() + impulse.row.last);
     Vec3p sum{};
     for (const auto& [i, w] : weights)
         sum += w * q[i];

@@ -32,30 +32,39 @@ class Impulses {
         double weight = 0;
     };
 
+    /// What moves p - o in the degrees of freedom: a range of weights, each of another one.
+    struct Row {
+        int first = 0, last = 0;
+    };
+
     /// `inverse_mass` [1/kg] and `is_free`, 1 or 0 in each component, are of degrees of freedom. All are referred to.
-    Impulses(const CornerMap& map,
-             const std::vector<double>& inverse_mass,
-             const Field& is_free,
-             double dt);
+    Impulses(const CornerMap& map, const std::vector<double>& inverse_mass, const Field& is_free);
+
+    /// Forgets all impulses: those that follow are of a drift of dt. Rows stay, as long as the map does.
+    void begin_drift(double dt);
 
     std::size_t size() const { return impulses_.size(); }
 
-    void add(const Touch& touch, std::span<const Share> shares);
+    /// Of one corner alone, the same whenever it is asked for; and of several.
+    Row row_of(int corner);
+    Row row_of(std::span<const Share> shares);
 
-    /// Settles all, also those of earlier calls, until none changes a depth by more than 1e-4 domain edges.   q (#dofs)
-    void settle(Field& q);
+    void add(const Touch& touch, const Row& row);
+
+    /// Settles all, also those of earlier calls, until none changes a depth by more than 1e-4 domain edges; v = T q goes
+    /// along.   q (#dofs), v (#C)
+    void settle(Field& q, Field& v);
 
   private:
     struct Impulse {
         Touch touch;
-        int first = 0, last = 0;                       // of weights_
+        Row row;
         double inverse_along = 0, inverse_across = 0;  // mass that is pushed and held [1/kg]
         double push = 0;                               // along the normal, never negative [N s]
         Vec3 hold{0, 0, 0};                            // across it [N s]
     };
 
-    void add_row(const Share& share);
-    void add_to_sum(const Share& share, int first);
+    void sweep(Field& q);
     double settle(Impulse& impulse, Field& q) const;
 
     Vec3p inverse_mass(int dof) const { return inverse_mass_[dof] * is_free_[dof]; }
@@ -65,9 +74,11 @@ class Impulses {
     const Field& is_free_;
     double dt_ = 0;
     std::vector<Impulse> impulses_;
-    std::vector<CornerMap::Weight> weights_;  // of p - o in q, each degree of freedom once
+    std::vector<CornerMap::Weight> weights_;
+    std::vector<Row> row_of_corner_;  // (#C) where it has been asked for
     std::vector<int> place_;  // (#dofs) in weights_ of the sum that is being made, -1: none
     std::vector<CornerMap::Weight> row_;
+    Field change_;  // (#dofs) of q
 };
 
 }  // namespace sim

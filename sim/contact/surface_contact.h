@@ -86,12 +86,9 @@ class SurfaceContact : public ContactEnergy {
     bool has_changed_touch(const Field& x) const;
 
     /// Takes from velocities q of the degrees of freedom, and v = T q of the corners, what would move vertices into domains in
-    /// the explicit step, by `impulses`, none yet, of that step. Returns by how much any q has changed [m/s], at most; none where there
+    /// the explicit step, by `impulses`. Returns by how much any q has changed [m/s], at most; none where there
     /// was nothing to take.
-    std::optional<double> restrain(const CornerMap& map,
-                                   Impulses& impulses,
-                                   Field& q,
-                                   Field& v) const;
+    std::optional<double> restrain(Impulses& impulses, Field& q, Field& v) const;
 
     /// Deepest penetration and smallest gap at x, as shares of the domain's edge; gaps are known up to `reach`.
     struct Report {

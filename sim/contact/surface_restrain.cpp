@@ -27,12 +27,10 @@ std::array<Impulses::Share, 16> shares_of(const ContactPoint& contact) {
 
 }  // namespace
 
-std::optional<double> SurfaceContact::restrain(const CornerMap& map,
-                                               Impulses& impulses,
-                                               Field& q,
-                                               Field& v) const {
+std::optional<double> SurfaceContact::restrain(Impulses& impulses, Field& q, Field& v) const {
     if (contacts_.empty())
         return std::nullopt;
+    impulses.begin_drift(dt_);
     // Contacts that would end inside, then those that the impulses of these bring inside.
     const Field q_before = q;
     std::vector<char> is_in(contacts_.size(), 0);
@@ -49,12 +47,11 @@ std::optional<double> SurfaceContact::restrain(const CornerMap& map,
                           contact.start_gap,
                           contact.edge,
                           pairs_[contact.pair].friction},
-                         shares_of(contact));
+                         impulses.row_of(shares_of(contact)));
         }
         if (impulses.size() == before)
             break;
-        impulses.settle(q);
-        map.apply(q, v);
+        impulses.settle(q, v);
     }
     if (impulses.size() == 0)
         return std::nullopt;

@@ -90,16 +90,6 @@ void CornerMap::move(const Field& x_n, double dt, const Field& q, Field& x) cons
     visit_corners(q, [&](int c, const Vec3p& v) { x[c] = x_n[c] + dt * v; });
 }
 
-void CornerMap::apply_and_move(
-    const Field& q, Field& u, const Field& x_n, double dt, Field& x) const {
-    u.resize(x_n.size());
-    x.resize(x_n.size());
-    visit_corners(q, [&](int c, const Vec3p& v) {
-        u[c] = v;
-        x[c] = x_n[c] + dt * v;
-    });
-}
-
 void CornerMap::apply_to_slaves(const Field& q, Field& u) const {
     visit_slaves<false>(q, [&](int c, const Vec3p& v) { u[c] = v; });
 }

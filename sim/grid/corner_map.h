@@ -63,9 +63,6 @@ class CornerMap {
     /// x = x_n + dt T q.   x_n, x (#C), q (#dofs)
     void move(const Field& x_n, double dt, const Field& q, Field& x) const;
 
-    /// u = T q and x = x_n + dt u.   q (#dofs), u, x_n, x (#C)
-    void apply_and_move(const Field& q, Field& u, const Field& x_n, double dt, Field& x) const;
-
     /// u = T q at slaves alone.   q (#dofs), u (#C)
     void apply_to_slaves(const Field& q, Field& u) const;
 
@@ -74,9 +71,6 @@ class CornerMap {
 
     /// u += T q where little of q is not zero: stencils without such a node are passed by.   q (#dofs), u (#C)
     void add_applied(const Field& q, Field& u) const;
-
-    /// q = Tᵀ f where f counts at `corners` alone, and stencils without one are passed by.   f (#C), q (#dofs)
-    void apply_transposed_of(const std::vector<int>& corners, const Field& f, Field& q) const;
 
     /// q = Tᵀ f at the nodes of one body alone, where only slaves count.   f (#C), q (#dofs)
     void gather_at_nodes(int body, const Field& f, Field& q) const;
@@ -172,21 +166,14 @@ class CornerMap {
     void gather_linear(const Part& part,
                        const Group& group,
                        const int* nodes,
-                       const std::vector<char>* counts,
                        const Field& f,
                        Shares& shares) const;
     template <class S, bool squared>
-    void gather(const Part& part,
-                const std::vector<char>* counts,
-                const Field& f,
-                Field& q) const;
+    void gather(const Part& part, const Field& f, Field& q) const;
     template <bool squared>
     void gather_all(const Field& f, Field& q) const;
     template <bool squared>
-    void gather_nodes(const Part& part,
-                      const std::vector<char>* counts,
-                      const Field& f,
-                      Field& q) const;
+    void gather_nodes(const Part& part, const Field& f, Field& q) const;
 
     // corner_map_gradients.cpp
     template <class S>
@@ -207,9 +194,7 @@ class CornerMap {
     std::vector<int> slave_of_corner_;                      // (#C) where it is no free one
     Field slave_local_;                                     // (#slaves) t of Spline
     std::vector<std::array<double, 8>> trilinear_weights_;  // of slaves with linear kernels
-    // Scratch of the gathers.
-    mutable std::vector<Shares> shares_;
-    mutable std::vector<char> counts_;  // (#slaves) of those of few corners; zero between uses
+    mutable std::vector<Shares> shares_;                    // scratch of the gathers
 
     // Scratch of rebuild(), kept to avoid allocations in every step.
     std::vector<int> slave_order_, cell_of_slave_, base_, placed_;

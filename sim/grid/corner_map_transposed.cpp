@@ -39,13 +39,10 @@ template <bool squared>
 void CornerMap::gather_linear(const Part& part,
                               const Group& group,
                               const int* nodes,
-                              const std::vector<char>* counts,
                               const Field& f,
                               Shares& shares) const {
     Vec3p sum[8] = {};
     for (int s = group.begin; s < group.end; ++s) {
-        if (counts != nullptr && !(*counts)[s])
-            continue;
         const auto& w8 = trilinear_weights_[part.first_trilinear + s];
         const Vec3p value = f[slave_corner_[s]];
 #pragma GCC unroll 8
@@ -57,29 +54,20 @@ void CornerMap::gather_linear(const Part& part,
 }
 
 template <class S, bool squared>
-void CornerMap::gather(const Part& part,
-                       const std::vector<char>* counts,
-                       const Field& f,
-                       Field& q) const {
+void CornerMap::gather(const Part& part, const Field& f, Field& q) const {
     constexpr int n = S::n, per_group = n * n * n;
     const auto sum_chunk = [&](int begin, int end, Shares& shares) {
         thread_local std::vector<Weighted<S>> weighted;
         for (int k = begin; k < end; ++k) {
             const Group& group = groups_[part.first_group + k];
             const int* nodes = &group_nodes_[part.first_entry + k * per_group];
-            if (counts != nullptr
-                && std::none_of(counts->begin() + group.begin,
-                                counts->begin() + group.end,
-                                [](char slave_counts) { return slave_counts; }))
-                continue;
             if constexpr (n == 2) {
-                gather_linear<squared>(part, group, nodes, counts, f, shares);
+                gather_linear<squared>(part, group, nodes, f, shares);
                 continue;
             }
             weighted.clear();
             for (int s = group.begin; s < group.end; ++s)
-                if (counts == nullptr || (*counts)[s])
-                    weighted.emplace_back(slave_local_[s], f[slave_corner_[s]], squared);
+                weighted.emplace_back(slave_local_[s], f[slave_corner_[s]], squared);
             for (int c = 0; c < n; ++c, nodes += n * n) {
                 Vec3p sum[n * n] = {};
                 for (const Weighted<S>& slave : weighted)
@@ -93,13 +81,10 @@ void CornerMap::gather(const Part& part,
 }
 
 template <bool squared>
-void CornerMap::gather_nodes(const Part& part,
-                             const std::vector<char>* counts,
-                             const Field& f,
-                             Field& q) const {
+void CornerMap::gather_nodes(const Part& part, const Field& f, Field& q) const {
     const auto nodes = q.begin() + n_free();
     std::fill(nodes + part.first_node, nodes + part.last_node, Vec3p{});
-    visit_spline(part.kernel, [&]<class S>(S) { gather<S, squared>(part, counts, f, q); });
+    visit_spline(part.kernel, [&]<class S>(S) { gather<S, squared>(part, f, q); });
 }
 
 template <bool squared>
@@ -109,28 +94,11 @@ void CornerMap::gather_all(const Field& f, Field& q) const {
             q[k] = f[free_corner_[k]];
     });
     for (const Part& part : parts_)
-        gather_nodes<squared>(part, nullptr, f, q);
+        gather_nodes<squared>(part, f, q);
 }
 
 void CornerMap::gather_at_nodes(int body, const Field& f, Field& q) const {
-    gather_nodes<false>(parts_[body], nullptr, f, q);
-}
-
-void CornerMap::apply_transposed_of(const std::vector<int>& corners,
-                                    const Field& f,
-                                    Field& q) const {
-    std::fill(q.begin(), q.begin() + n_free(), Vec3p{});
-    counts_.resize(slave_corner_.size(), 0);
-    for (const int c : corners)
-        if (const int k = dof_of_corner_[c]; k >= 0)
-            q[k] = f[c];
-        else
-            counts_[slave_of_corner_[c]] = 1;
-    for (const Part& part : parts_)
-        gather_nodes<false>(part, &counts_, f, q);
-    for (const int c : corners)
-        if (dof_of_corner_[c] < 0)
-            counts_[slave_of_corner_[c]] = 0;
+    gather_nodes<false>(parts_[body], f, q);
 }
 
 void CornerMap::apply_transposed(const Field& f, Field& q) const {

@@ -263,10 +263,10 @@ TEST_CASE("explicit contact takes what would end inside, keeps momentum and make
     const double before = blocks.energy(end(q));
     REQUIRE(before > 0);
     Field after = q;
-    sim::Impulses impulses(map, inverse_mass, is_free, dt);
-    REQUIRE(blocks.contact.restrain(map, impulses, after, v));
+    sim::Impulses impulses(map, inverse_mass, is_free);
+    REQUIRE(blocks.contact.restrain(impulses, after, v));
     const Field missed = tests::sum(tests::sum(x, dt, v), -1, end(after));
-    CHECK(tests::dot(missed, missed) == 0);
+    CHECK(tests::dot(missed, missed) < 1e-28);
     // What stays of a depth, 1e-4 edges, is 400 times less than they would have got in.
     CHECK(blocks.energy(end(after)) < 1e-5 * before);
     const auto momentum = [&](const Field& velocities, int body) {

@@ -195,7 +195,7 @@ TEST_CASE("the gathers are the transposes of T and of its squares") {
     }
 }
 
-TEST_CASE("T and its transpose for few corners are those for all, where the others are zero") {
+TEST_CASE("T of what is zero at most nodes is that of all") {
     tests::Random random(17);
     Sample s = sample(offsets[1]);
     s.bodies[0].kernel = GENERATE(sim::Kernel::Linear, sim::Kernel::Quadratic);
@@ -203,19 +203,15 @@ TEST_CASE("T and its transpose for few corners are those for all, where the othe
     s.map.rebuild(s.corners, s.free, s.bodies);
     const Eigen::MatrixXd T = dense(s);
     const int n_dofs = s.map.n_dofs();
-    const std::vector<int> few = {3, 40, 90, 100, 100, 41};  // some twice
-    const Field all = tests::random_field(s.n_corners(), random),
-                before = tests::random_field(s.n_corners(), random);
-    Eigen::VectorXd f = Eigen::VectorXd::Zero(s.n_corners());
-    for (const int c : few)
-        f[c] = all[c][1];
-    Field q(n_dofs, Vec3p{7, 7, 7, 0}), u = before;
-    s.map.apply_transposed_of(few, all, q);
-    const Eigen::VectorXd expected_q = T.transpose() * f;
-    for (int i = 0; i < n_dofs; ++i)
-        CHECK(q[i][1] == Approx(expected_q[i]).margin(1e-14));
+    const Field before = tests::random_field(s.n_corners(), random);
+    Field q(n_dofs), u = before;
+    Eigen::VectorXd few = Eigen::VectorXd::Zero(n_dofs);
+    for (int i = 0; i < n_dofs; i += n_dofs / 5) {
+        few[i] = tests::between(random, -1, 1);
+        q[i] = Vec3p{0, few[i], 0, 0};
+    }
     s.map.add_applied(q, u);
-    const Eigen::VectorXd change = T * expected_q;
+    const Eigen::VectorXd change = T * few;
     CHECK((change.array() == 0).count() > s.n_corners() / 4);
     CHECK((change.array() != 0).count() > 10);
     for (int c = 0; c < s.n_corners(); ++c)
@@ -229,12 +225,6 @@ TEST_CASE("T and its transpose for few corners are those for all, where the othe
         for (int c = 0; c < s.n_corners(); ++c)
             REQUIRE(column[c][1] == T(c, i));
     }
-
-    // What few corners leave behind is not seen by others.
-    s.map.apply_transposed_of({5}, all, q);
-    CHECK(q[0][1] == (s.map.free_corner()[0] == 5 ? all[5][1] : 0));
-    for (int i = 0; i < n_dofs; ++i)
-        CHECK(q[i][1] == Approx(T(5, i) * all[5][1]).margin(1e-14));
 }
 
 TEST_CASE("the degrees of freedom hold the whole mass for any free set") {
