@@ -228,7 +228,9 @@ double Stepper::restrain_by_colliders(const Field& x, double length) {
     for (int pass = 0; !stops.empty() && pass < contact_passes; ++pass) {
         for (const auto& [corner, depth, touch] : stops)
             impulses_->add(touch, impulses_->row_of(corner));
-        impulses_->settle(q_moved_, moved_);
+        const double way = length * impulses_->settle(q_moved_, moved_);
+        if (way < depth_tolerance * colliders_.finest_edge())
+            break;
         // What the impulses have brought inside, or still is where the collider's surface turns.
         stops = colliders_.stops(x, moved_, length, depth_tolerance);
     }

@@ -16,13 +16,6 @@ constexpr double margin = 0.5;         // of the domain's edge, where corners co
 constexpr double share_of_thickness =
     0.4;  // that a corner may pass in a step where it is about to touch
 
-double finest_edge(const std::vector<ContactCorner>& corners) {
-    double edge = infinity;
-    for (const ContactCorner& corner : corners)
-        edge = std::min(edge, corner.edge);
-    return edge;
-}
-
 /// How far outside a collider a corner touches it at most.   [m]
 double longest_reach(const std::vector<ContactCorner>& corners) {
     double reach = 0;
@@ -38,12 +31,15 @@ ColliderContact::ColliderContact(const std::vector<Collider>& colliders,
     : corners_(std::move(corners)) {
     if (corners_.empty())
         return;
+    finest_edge_ = infinity;
+    for (const ContactCorner& corner : corners_)
+        finest_edge_ = std::min(finest_edge_, corner.edge);
     for (const Collider& collider : colliders)
-        colliders_.emplace_back(collider, finest_edge(corners_), longest_reach(corners_));
+        colliders_.emplace_back(collider, finest_edge_, longest_reach(corners_));
     std::vector<int> indices;
     for (const ContactCorner& corner : corners_)
         indices.push_back(corner.corner);
-    near_ = {std::move(indices), colliders_.size(), margin * finest_edge(corners_)};
+    near_ = {std::move(indices), colliders_.size(), margin * finest_edge_};
     pairs_.resize(corners_.size() * colliders_.size());
     for (const MovingCollider& collider : colliders_)
         poses_.push_back(collider.pose(0));

@@ -38,6 +38,9 @@ class ColliderContact : public ContactEnergy {
 
     bool empty() const { return colliders_.empty() || corners_.empty(); }
 
+    /// Of the bodies' domains.   [m]
+    double finest_edge() const { return finest_edge_; }
+
     /// Fixes what the step from `time` to time + dt starts with: x_n (#C), the bodies' top speeds (#bodies) [m/s], and
     /// the normal forces of friction.
     void begin_step(const Field& x_n,
@@ -127,6 +130,7 @@ class ColliderContact : public ContactEnergy {
 
     std::vector<MovingCollider> colliders_;
     std::vector<ContactCorner> corners_;
+    double finest_edge_ = 0;
     NearCorners near_;
     std::vector<Pair> pairs_;        // (#near × #colliders)
     std::vector<double> top_speed_;  // (#bodies) of this step; none before the first [m/s]

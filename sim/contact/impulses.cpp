@@ -47,32 +47,34 @@ Impulses::Row Impulses::row_of(std::span<const Share> shares) {
             weights_[place_[i]].weight += factor * w;
         }
     }
-    const Row row{first, static_cast<int>(weights_.size())};
-    for (int k = row.first; k < row.last; ++k)
-        place_[weights_[k].dof] = -1;
+    Row row{first, static_cast<int>(weights_.size())};
+    for (int k = row.first; k < row.last; ++k) {
+        const auto& [i, w] = weights_[k];
+        row.inverse_mass += w * w * inverse_mass(i);
+        place_[i] = -1;
+    }
     return row;
 }
 
 void Impulses::add(const Touch& touch, const Row& row) {
     Impulse impulse{touch, row};
-    Vec3p sum{};
-    for (int k = row.first; k < row.last; ++k) {
-        const auto& [i, w] = weights_[k];
-        sum += w * w * inverse_mass(i);
-    }
-    const Vec3 inverse = unpadded(sum);
+    const Vec3 inverse = unpadded(row.inverse_mass);
     impulse.inverse_along = touch.normal.cwiseAbs2().dot(inverse);
     impulse.inverse_across = inverse.maxCoeff();
     if (impulse.inverse_along > 0)  // else held on all sides
         impulses_.push_back(impulse);
 }
 
-void Impulses::settle(Field& q, Field& v) {
+double Impulses::settle(Field& q, Field& v) {
     change_ = q;
     sweep(q);
-    for (std::size_t i = 0; i < q.size(); ++i)
+    double squared = 0;
+    for (std::size_t i = 0; i < q.size(); ++i) {
         change_[i] = q[i] - change_[i];
+        squared = std::max(squared, dot(change_[i], change_[i]));
+    }
     map_.add_applied(change_, v);
+    return std::sqrt(squared);  // T takes means
 }
 
 void Impulses::sweep(Field& q) {

@@ -32,9 +32,11 @@ class Impulses {
         double weight = 0;
     };
 
-    /// What moves p - o in the degrees of freedom: a range of weights, each of another one.
+    /// What moves p - o in the degrees of freedom: a range of weights, each of another one, and the inverse of the mass that
+    /// they push in each direction [1/kg].
     struct Row {
         int first = 0, last = 0;
+        Vec3p inverse_mass{};
     };
 
     /// `inverse_mass` [1/kg] and `is_free`, 1 or 0 in each component, are of degrees of freedom. All are referred to.
@@ -52,8 +54,8 @@ class Impulses {
     void add(const Touch& touch, const Row& row);
 
     /// Settles all, also those of earlier calls, until none changes a depth by more than 1e-4 domain edges; v = T q goes
-    /// along.   q (#dofs), v (#C)
-    void settle(Field& q, Field& v);
+    /// along. Returns by how much any v changes, at most.   q (#dofs), v (#C) [m/s]
+    double settle(Field& q, Field& v);
 
   private:
     struct Impulse {

@@ -47,13 +47,13 @@ PointEnergy::PointEnergy(const CornerMap& map,
       first_corner_(first_corner),
       cell_size_(cell_size),
       points_(points),
-      mu_(points.mu),
-      lambda_(points.lambda),
       J_of_moduli_(points.size(), 1.0),
       F_next_(points.size()) {
     for (int p = 0; p < points.size(); ++p) {
-        law_.push_back(static_cast<unsigned char>(law_of(points.model[points.region[p]])));
-        laws_ |= 1u << law_.back();
+        const Model model = law_of(points.model[points.region[p]]);
+        law_.push_back(
+            {points.volume[p], points.mu[p], points.lambda[p], static_cast<double>(model)});
+        models_ |= 1u << static_cast<int>(model);
         scale_ += points.volume[p] * (points.lambda[p] + 2 * points.mu[p]);
     }
 }
@@ -70,8 +70,8 @@ void PointEnergy::harden(int p) {
     J_of_moduli_[p] = start_.J_plastic[p];
     const double harder =
         std::exp(points_.snow[points_.region[p]].hardening * (1 - start_.J_plastic[p]));
-    mu_[p] = harder * points_.mu[p];
-    lambda_[p] = harder * points_.lambda[p];
+    law_[p].mu = harder * points_.mu[p];
+    law_[p].lambda = harder * points_.lambda[p];
 }
 
 void PointEnergy::yield(const CornerMap::Slaves& at) {
@@ -94,11 +94,8 @@ void PointEnergy::yield(const CornerMap::Slaves& at) {
 PointsOfSlaves PointEnergy::slaves() const {
     return {map_.slave_corner().data(),
             first_corner_,
-            points_.volume.data(),
-            mu_.data(),
-            lambda_.data(),
             law_.data(),
-            laws_,
+            models_,
             start_.F.data()};
 }
 
@@ -206,19 +203,20 @@ void PointEnergy::accept(PointState& state) {
 double PointEnergy::highest_frequency(Kernel kernel) const {
     double most = 0;
     for (int p = 0; p < points_.size(); ++p)
-        most =
-            std::max(most, (3 * lambda_[p] + 2 * mu_[p]) * points_.volume[p] / points_.mass[p]);
+        most = std::max(most,
+                        (3 * law_[p].lambda + 2 * law_[p].mu) * law_[p].volume / points_.mass[p]);
     return std::sqrt(most * sharpest(kernel)) / cell_size_;
 }
 
 double PointEnergy::energy(const PointState& state) const {
     double sum = 0;
-    for (int p = 0; p < points_.size(); ++p)
-        sum += points_.volume[p]
-               * visit(
-                   static_cast<Model>(law_[p]), [&](auto law) __attribute__((always_inline)) {
-                       return law.energy_density(state.F[p], mu_[p], lambda_[p]);
-                   });
+    for (int p = 0; p < points_.size(); ++p) {
+        const auto& [volume, mu, lambda, model] = law_[p];
+        sum += volume
+               * visit(static_cast<Model>(static_cast<int>(model)), [&](auto law) {
+                     return law.energy_density(state.F[p], mu, lambda);
+                 });
+    }
     return sum;
 }
 

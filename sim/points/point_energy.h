@@ -74,9 +74,8 @@ class PointEnergy : public GridEnergy {
     int body_, first_corner_;
     double cell_size_;
     const MaterialPoints& points_;
-    std::vector<unsigned char> law_;   // (#P)
-    unsigned laws_ = 0;                // a bit for each of them
-    std::vector<double> mu_, lambda_;  // (#P) of this step [Pa]
+    std::vector<PointLaw> law_;        // (#P) now
+    unsigned models_ = 0;              // a bit for each of their models
     std::vector<double> J_of_moduli_;  // (#P) J_P that they are of: few points yield in a step
     double scale_ = 0;
     // Of the start of the step, from where its motion leads to F_next_: what yields meanwhile yields there, too.

@@ -5,6 +5,7 @@
 #include "sim/points/lane_rows.h"
 
 #include <algorithm>
+#include <cstring>
 
 // Compiled for two instruction sets and chosen at run time; both do the same operations in every lane.
 #define SUPPLE_LANES __attribute__((target_clones("arch=x86-64-v4", "default")))
@@ -16,8 +17,8 @@ namespace {
 #define ALWAYS_INLINE [[gnu::always_inline]] inline
 
 struct Batch {
-    alignas(64) Lanes volume, mu, lambda, law;
-    unsigned laws;  // bit m set where a point of the body has model m
+    alignas(64) Lanes volume, mu, lambda, model;
+    unsigned models;  // bit m set where a point of the body has model m
     int n;          // points; the lanes above have no volume and rest undeformed
 };
 
@@ -44,19 +45,17 @@ ALWAYS_INLINE Matrix3<Lanes> load(const Matrix3<double>* matrices, const Place& 
 }
 
 ALWAYS_INLINE void load(const PointsOfSlaves& points, const Place& at, Batch& batch) {
-    batch.laws = points.laws;
-    if (at.n < lane_count) {
-        batch.volume = batch.lambda = Lanes{};
-        batch.mu = uniform<Lanes>(1);
-        batch.law = uniform<Lanes>(static_cast<double>(points.law[at.point[0]]));
-    }
-    for (int l = 0; l < at.n; ++l) {
-        const int p = at.point[l];
-        batch.volume[l] = points.volume[p];
-        batch.mu[l] = points.mu[p];
-        batch.lambda[l] = points.lambda[p];
-        batch.law[l] = points.law[p];
-    }
+    static_assert(sizeof(PointLaw) == sizeof(Lanes));
+    const PointLaw nothing{0, 1, 0, points.law[at.point[0]].model};
+    Lanes law[lane_count];
+    for (int l = 0; l < lane_count; ++l)
+        std::memcpy(&law[l], l < at.n ? &points.law[at.point[l]] : &nothing, sizeof law[l]);
+    transpose(law);
+    batch.volume = law[0];
+    batch.mu = law[1];
+    batch.lambda = law[2];
+    batch.model = law[3];
+    batch.models = points.models;
     batch.n = at.n;
 }
 
@@ -107,7 +106,7 @@ ALWAYS_INLINE Matrix3<Lanes> moved(const Matrix3<Lanes>& F_n,
 
 /// Positive in the lanes of a law.
 ALWAYS_INLINE Lanes where_law(const Batch& batch, Model model) {
-    const Lanes difference = batch.law - static_cast<double>(model);
+    const Lanes difference = batch.model - static_cast<double>(model);
     return 0.5 - difference * difference;
 }
 
@@ -115,11 +114,11 @@ template <class Law>
 ALWAYS_INLINE void take_law(
     const Batch& batch, Model model, const Matrix3<Lanes>& F, Lanes& psi, Matrix3<Lanes>& P) {
     const unsigned bit = 1u << static_cast<int>(model);
-    if (!(batch.laws & bit))
+    if (!(batch.models & bit))
         return;
     Matrix3<Lanes> P_law;
     const Lanes psi_law = Law::energy_and_first_piola(F, batch.mu, batch.lambda, P_law);
-    if (batch.laws == bit) {
+    if (batch.models == bit) {
         psi = psi_law;
         P = P_law;
         return;
@@ -135,7 +134,7 @@ ALWAYS_INLINE void take_law_stiffness(const Batch& batch,
                                       Model model,
                                       const Matrix3<Lanes>& F,
                                       Lanes* A) {
-    if (!(batch.laws & 1u << static_cast<int>(model)))
+    if (!(batch.models & 1u << static_cast<int>(model)))
         return;
     alignas(64) Lanes A_law[packed_size];
     Law::stiffness(F, uniform<Lanes>(1), Lanes(batch.lambda / batch.mu), A_law);
@@ -166,7 +165,7 @@ ALWAYS_INLINE void see_from_gradients(const Matrix3<Lanes>& F, const Lanes* C, F
         Mat3 F_l;
         for (int k = 0; k < 9; ++k)
             F_l(k % 3, k / 3) = F.m[k][l];
-        const auto model = static_cast<Model>(static_cast<int>(batch.law[l]));
+        const auto model = static_cast<Model>(static_cast<int>(batch.model[l]));
         const Mat9 projected =
             projected_stiffness(model, F_l, 1, batch.lambda[l] / batch.mu[l]);
         for (int r = 0; r < 9; ++r)

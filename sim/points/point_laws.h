@@ -8,13 +8,19 @@
 
 namespace sim {
 
+/// What a point is made of, in the order that lanes are loaded in.
+struct alignas(32) PointLaw {
+    double volume = 0;      // at rest [m³]
+    double mu = 0, lambda = 0;  // [Pa]
+    double model = 0;       // Model as a number
+};
+
 /// Points of a body in the order in which the grid visits them. Point of slave s: corner[s] - first_corner.
 struct PointsOfSlaves {
     const int* corner = nullptr;
     int first_corner = 0;
-    const double *volume = nullptr, *mu = nullptr, *lambda = nullptr;  // (#P) [m³], [Pa]
-    const unsigned char* law = nullptr;                                // (#P) Model as a number
-    unsigned laws = 0;                     // bit m set where a point has law m
+    const PointLaw* law = nullptr;         // (#P)
+    unsigned models = 0;                   // bit m set where a point has model m
     const Matrix3<double>* F_n = nullptr;  // (#P) at the start of the step
 };
 
