@@ -155,6 +155,7 @@ bool Stepper::drift_with_contact(const State& state,
     restrain_on_grid(x, length);
     if (colliders_.largest_step(x, moved_, time, length) < length) {
         summary_.termination = Termination::Unstable;  // a corner might pass through a collider
+        drift(x, length);
         return false;
     }
     const bool presses = n_drifts_ == 1 && restrain_by_surfaces(state, length);
@@ -328,10 +329,9 @@ void Stepper::set_explicit_reactions(const State& state, double dt) {
                        * (Vec3p{1, 1, 1, 0} - prescribed_.is_free[c]);
     }
     const double damped = std::pow(1 + scene_.solver.damping * dt_hat_, 2 * n_drifts_);
-    std::size_t k = 0;  // of pinned nodes, in whose order this asks
-    set_node_reactions([&](int i) {
+    set_node_reactions([&](int k, int i) {
         const Vec3p change = damped * q_moved_[i] - q_n_[i];
-        const Vec3p inner = inner_at_nodes_[k++] / double(n_drifts_);
+        const Vec3p inner = inner_at_nodes_[k] / double(n_drifts_);
         return dof_mass_[i] * change / dt - node_force_[i] + inner;
     });
 }

@@ -107,7 +107,7 @@ void Stepper::end_implicit(State& state, double dt) {
     state.contacts = surfaces_.held(potential_.positions());
     // What inner forces gave, before contact on the grid changes what moves the corners.
     const auto& step = potential_.step();
-    set_node_reactions([&](int i) {
+    set_node_reactions([&](int, int i) {
         return (step.mass[i] * (q_[i] - step.q_tilde[i]) + potential_.inner_part()[i])
                / dt_hat_;
     });

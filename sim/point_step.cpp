@@ -86,10 +86,12 @@ void Stepper::commit_affine(State& state, const Field& q) const {
                              });
 }
 
-void Stepper::set_node_reactions(const std::function<Vec3p(int)>& force_on) {
+void Stepper::set_node_reactions(const std::function<Vec3p(int, int)>& force_on) {
     node_reactions_.clear();
-    for (const PinnedNode& node : pinned_nodes_) {
-        const Vec3p force = force_on(node.dof) * (Vec3p{1, 1, 1, 0} - node.is_free);
+    for (std::size_t k = 0; k < pinned_nodes_.size(); ++k) {
+        const PinnedNode& node = pinned_nodes_[k];
+        const Vec3p force =
+            force_on(static_cast<int>(k), node.dof) * (Vec3p{1, 1, 1, 0} - node.is_free);
         node_reactions_.push_back(
             {node.pin, unpadded(map_.dof_position()[node.dof]), unpadded(force)});
     }

@@ -200,7 +200,7 @@ struct SolverOptions {
     EnrichmentCriteria enrich;
     Steps steps = Steps::Implicit;
     Quadrature quadrature = Quadrature::OnePoint;
-    // Largest step, of explicit ones largest drift: several share a map while no bodies touch. Empty: a tenth of a
+    // Largest step, of explicit ones largest drift: several share a map while no surfaces touch. Empty: a tenth of a
     // frame.   [s]
     std::optional<double> dt;
     double grid_ratio = 2;  // background cell / domain edge, >= 1

@@ -24,9 +24,7 @@ std::vector<GridPair> Stepper::pairs_on_grid() const {
 void Stepper::begin_contact(const Field& x) {
     impulses_.emplace(map_, inverse_mass_, potential_.step().is_free);
     grid_contact_.emplace(
-        pairs_on_grid(),
-        ContactFields{
-            x, assembly_.mass, assembly_.volume, assembly_.outside});
+        pairs_on_grid(), ContactFields{x, assembly_.mass, assembly_.volume, assembly_.outside});
 }
 
 bool Stepper::restrain_on_grid(const Field& x, double dt) {

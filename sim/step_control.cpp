@@ -56,20 +56,25 @@ void Stepper::advance(State& state, double end, double dt) {
             state.quiet_drifts = 0;
             continue;
         }
-        state.dt_limit = length / 2;
-        const bool is_expected = summary_.termination == Termination::Unstable;
-        const assets::Error failure = diagnose(scene_,
-                                               assembly_,
-                                               *this,
-                                               state,
-                                               is_explicit ? x_end_ : potential_.positions(),
-                                               length,
-                                               summary_);
-        if (length < shortest * stable)
-            throw failure;
-        if (!is_expected)
-            failures.emplace_back(failure.what());
+        halve(state, length, stable);
     }
+}
+
+void Stepper::halve(State& state, double failed, double stable) {
+    state.dt_limit = failed / 2;
+    const bool is_expected = summary_.termination == Termination::Unstable;
+    const bool is_explicit = scene_.solver.steps == Steps::Explicit;
+    const assets::Error failure = diagnose(scene_,
+                                           assembly_,
+                                           *this,
+                                           state,
+                                           is_explicit ? x_end_ : potential_.positions(),
+                                           failed,
+                                           summary_);
+    if (failed < shortest * stable)
+        throw failure;
+    if (!is_expected)
+        failures.emplace_back(failure.what());
 }
 
 double Stepper::longest_of_drifts(const State& state, double drift, double dt) const {

@@ -297,7 +297,7 @@ void Stepper::refresh(const State& state) {
     Field inner(map_.n_dofs()), force(map_.n_dofs());
     add_start_gradient(inner);
     map_.apply_transposed(assembly_.force, force);
-    set_node_reactions([&](int i) { return inner[i] - force[i]; });
+    set_node_reactions([&](int, int i) { return inner[i] - force[i]; });
     reaction_.assign(state.x.size(), Vec3p{});
     for (const int c : prescribed_.corners)
         reaction_[c] =

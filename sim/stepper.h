@@ -26,9 +26,9 @@ class Stepper {
     Stepper(const Scene& scene, Assembly& assembly);
 
     /// Steps by solver.steps until state.time is `end`, in steps no longer than dt, nor than failures and stability
-    /// allow: a step that fails is halved, and grows back slowly. Explicit steps are longer while no bodies touch: kicks
-    /// and drifts, no longer than that, are repeated under one map T as long as no corner goes far in the cells of the
-    /// grid. Throws Error(Diverged) where halving does not help.
+    /// allow: a step that fails is halved, and grows back slowly. Explicit steps are longer while no surfaces touch: kicks
+    /// and drifts, no longer than that, are repeated under one map T as long as no slaved corner goes far in the cells of
+    /// the grid. Throws Error(Diverged) where halving does not help.
     void advance(State& state, double end, double dt);
 
     /// Equilibrium of the loads at `time`, reached from `state` by moving the pins there; velocities become zero.
@@ -74,6 +74,7 @@ class Stepper {
   private:
     // step_control.cpp
     double longest_of_drifts(const State& state, double drift, double dt) const;
+    void halve(State& state, double failed, double stable);
     bool try_step(State& state, double dt);
 
     // stepper.cpp: what all steps share
@@ -108,7 +109,8 @@ class Stepper {
     std::vector<GridEnergy*> make_points();
     void add_affine_momentum(const State& state);
     void commit_affine(State& state, const Field& q) const;
-    void set_node_reactions(const std::function<Vec3p(int)>& force_on);
+    // From force_on(k-th pinned node, its degree of freedom).   [N]
+    void set_node_reactions(const std::function<Vec3p(int, int)>& force_on);
     void add_start_gradient(Field& gradient);
     double end_drift_of_points(double length);
     void add_at_pinned_nodes(double share);
@@ -180,7 +182,7 @@ class Stepper {
     Field q_n_, q_;                     // (#dofs) [m/s]
     // (#dofs) Tᵀ f; explicit steps: of domains with their stress, and at nodes alone   [N]
     Field node_force_;
-    Field q_moved_;   // (#dofs) what moved_ comes from, but for a rigid shift [m/s]
+    Field q_moved_;  // (#dofs) what moved_ comes from, but for a rigid shift [m/s]
 
     /// A degree of freedom with prescribed components, and their velocity [m/s].
     struct PrescribedDof {

@@ -89,9 +89,7 @@ double ColliderContact::depth_in_step(
 }
 
 template <class Position, class Way, class Visit>
-void ColliderContact::for_pairs(const Position& at,
-                                const Way& way,
-                                const Visit& visit) const {
+void ColliderContact::for_pairs(const Position& at, const Way& way, const Visit& visit) const {
     if (empty())
         return;
     const int n_colliders = static_cast<int>(colliders_.size());
@@ -228,8 +226,9 @@ std::vector<ColliderContact::Stop> ColliderContact::stops(const Field& x,
         const Vec3 at = unpadded(x[c]),
                    carried = (poses_[j].carry(start_poses_[j].bring_back(at)) - at) / dt;
         const double along = normal.dot(dt * (unpadded(v[c]) - carried));
-        stops.push_back(
-            {c, depth / edge, {normal, -depth - along, edge, colliders_[j].friction(), carried}});
+        stops.push_back({c,
+                         depth / edge,
+                         {normal, -depth - along, edge, colliders_[j].friction(), carried}});
     });
     return stops;
 }

@@ -48,7 +48,7 @@ struct Side {
 struct Node {
     std::array<Side, 2> side;
     std::array<Vec3p, 3>
-        normals;  // out of the first body: entry n of [k] is component k of the n-th
+        normals;             // out of the first body: entry n of [k] is component k of the n-th
     bool is_pushed = false;  // in this drift
 
     bool is_shared() const { return std::min(side[0].share, side[1].share) > least_share; }

@@ -43,8 +43,8 @@ struct ContactFields {
 /// What it reaches (test_grid_contact.cpp): where corners are free a block slides down another by mu = 0, 0.1 and sticks by
 /// 0.5 within 1% of Coulomb's law, 3% where they are slaved; nearer than 1.5 cells to an edge of the lower one it also
 /// drifts, and misses by 6%. It rests within 0.01 domain edges, slaved 0.05. Corners alone are seen: two cubes that meet
-/// with a face on a face get 0.03 edges into each other at a fifth of the speed of waves, 0.3 at that speed; a rim between
-/// two rows of the other's corners 0.3 to 0.5, and 1.1. Contact between surfaces keeps to 0.02.
+/// with a face on a face get 0.02 edges into each other at a fifth of the speed of waves, 0.2 at that speed; a rim between
+/// two rows of the other's corners 0.25 to 0.4, and 1.3 to 1.7. Contact between surfaces keeps to 0.02.
 ///
 /// Holds for one step, of several drifts where the map T serves for as many: map and `corners` must stay as they are as long
 /// as it lives.

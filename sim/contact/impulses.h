@@ -40,7 +40,9 @@ class Impulses {
     };
 
     /// `inverse_mass` [1/kg] and `is_free`, 1 or 0 in each component, are of degrees of freedom. All are referred to.
-    Impulses(const CornerMap& map, const std::vector<double>& inverse_mass, const Field& is_free);
+    Impulses(const CornerMap& map,
+             const std::vector<double>& inverse_mass,
+             const Field& is_free);
 
     /// Forgets all impulses: those that follow are of a drift of dt. Rows stay, as long as the map does.
     void begin_drift(double dt);

@@ -80,23 +80,15 @@ void PointEnergy::yield(const CornerMap::Slaves& at) {
         const int n = std::min(yielding_at_once, at.end - s);
         for (int k = 0; k < n; ++k)
             point[k] = map_.slave_corner()[s + k] - first_corner_;
-        if (sim::yield(points_,
-                       point,
-                       n,
-                       F_next_.data(),
-                       start_.F.data(),
-                       start_.J_plastic.data()))
+        if (sim::yield(
+                points_, point, n, F_next_.data(), start_.F.data(), start_.J_plastic.data()))
             for (int k = 0; k < n; ++k)
                 harden(point[k]);
     }
 }
 
 PointsOfSlaves PointEnergy::slaves() const {
-    return {map_.slave_corner().data(),
-            first_corner_,
-            law_.data(),
-            models_,
-            start_.F.data()};
+    return {map_.slave_corner().data(), first_corner_, law_.data(), models_, start_.F.data()};
 }
 
 template <class Deform>
@@ -203,8 +195,8 @@ void PointEnergy::accept(PointState& state) {
 double PointEnergy::highest_frequency(Kernel kernel) const {
     double most = 0;
     for (int p = 0; p < points_.size(); ++p)
-        most = std::max(most,
-                        (3 * law_[p].lambda + 2 * law_[p].mu) * law_[p].volume / points_.mass[p]);
+        most = std::max(
+            most, (3 * law_[p].lambda + 2 * law_[p].mu) * law_[p].volume / points_.mass[p]);
     return std::sqrt(most * sharpest(kernel)) / cell_size_;
 }
 
@@ -212,10 +204,9 @@ double PointEnergy::energy(const PointState& state) const {
     double sum = 0;
     for (int p = 0; p < points_.size(); ++p) {
         const auto& [volume, mu, lambda, model] = law_[p];
-        sum += volume
-               * visit(static_cast<Model>(static_cast<int>(model)), [&](auto law) {
-                     return law.energy_density(state.F[p], mu, lambda);
-                 });
+        sum += volume * visit(static_cast<Model>(static_cast<int>(model)), [&](auto law) {
+                   return law.energy_density(state.F[p], mu, lambda);
+               });
     }
     return sum;
 }

@@ -83,7 +83,7 @@ class PointEnergy : public GridEnergy {
     std::vector<Matrix3<double>> F_next_;    // (#P) where all was last taken to
     std::vector<double> chunk_energy_;       // (#chunks)
     std::vector<PointStiffness> stiffness_;  // (#batches)
-    std::vector<Lanes> weight_;                      // (#batches) [J]
+    std::vector<Lanes> weight_;              // (#batches) [J]
 };
 
 }  // namespace sim

@@ -19,7 +19,7 @@ namespace {
 struct Batch {
     alignas(64) Lanes volume, mu, lambda, model;
     unsigned models;  // bit m set where a point of the body has model m
-    int n;          // points; the lanes above have no volume and rest undeformed
+    int n;            // points; the lanes above have no volume and rest undeformed
 };
 
 /// Where the points of a batch are; the lanes above have no volume and rest undeformed.

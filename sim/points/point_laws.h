@@ -10,9 +10,9 @@ namespace sim {
 
 /// What a point is made of, in the order that lanes are loaded in.
 struct alignas(32) PointLaw {
-    double volume = 0;      // at rest [m³]
+    double volume = 0;          // at rest [m³]
     double mu = 0, lambda = 0;  // [Pa]
-    double model = 0;       // Model as a number
+    double model = 0;           // Model as a number
 };
 
 /// Points of a body in the order in which the grid visits them. Point of slave s: corner[s] - first_corner.

@@ -182,10 +182,8 @@ double energy_left(double dt, double pic_rate) {
     scene.solver.pic_rate = pic_rate;
     const Vec3 flight(0, 20, 0);
     scene.bodies[0].velocity = flight;
-    scene.pins = {{"wall",
-                   body.name,
-                   tests::behind({0, 0, 0}, {1, 0, 0}),
-                   sim::Pin::Velocity{flight}}};
+    scene.pins = {
+        {"wall", body.name, tests::behind({0, 0, 0}, {1, 0, 0}), sim::Pin::Velocity{flight}}};
     scene.forces = {sim::Gravity{{0, 0, -10}}};
     sim::Simulation simulation(scene, 1.0 / 24);
     const auto total = [&] {

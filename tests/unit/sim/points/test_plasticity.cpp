@@ -103,10 +103,8 @@ TEST_CASE("points yield side by side as each of them alone") {
     int n_yielded = 0;
     for (int p = 2; p < n; ++p) {
         if (points.is_snow(p))
-            sim::yield(points.snow[points.region[p]],
-                       alone.F[p],
-                       alone_n.F[p],
-                       alone.J_plastic[p]);
+            sim::yield(
+                points.snow[points.region[p]], alone.F[p], alone_n.F[p], alone.J_plastic[p]);
         const Eigen::Map<const Mat3> is(together.F[p].m), wanted(alone.F[p].m),
             was(before.F[p].m);
         // The nearer two stretches come to cancel, the less is sure about the frame in between.

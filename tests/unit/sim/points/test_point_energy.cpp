@@ -1,5 +1,6 @@
 // The energy of points against its own differences, against an obvious sum, and what it does not see.
 #include "sim/materials/law.h"
+#include "sim/points/plasticity.h"
 #include "sim/points/point_energy.h"
 #include "tests/support/box_body.h"
 #include "tests/support/derivative_order.h"
@@ -61,6 +62,38 @@ const std::vector<Kernel> kernels = {Kernel::Linear, Kernel::Quadratic, Kernel::
 
 }  // namespace
 
+namespace {
+
+/// ∇v at the points.
+std::vector<Mat3> gradients(const Sample& sample, const Field& v) {
+    std::vector<Mat3> D(sample.points.size());
+    sample.map.visit_gradients(
+        0,
+        CornerMap::Factor::Slope,
+        v,
+        [&](const CornerMap::Slaves& at, sim::Gradient* values) {
+            for (int slave = at.begin; slave < at.end; ++slave)
+                for (int j = 0; j < 3; ++j)
+                    D[sample.map.slave_corner()[slave]].col(j) =
+                        sim::unpadded(values[slave - at.begin].column[j]);
+        });
+    return D;
+}
+
+/// Of point p with F, and as hard as J_plastic makes it.   [J]
+double energy_of(const Sample& sample, int p, const Mat3& F, double J_plastic) {
+    sim::Matrix3<double> matrix;
+    Eigen::Map<Mat3>(matrix.m) = F;
+    const double harder = sample.points.is_snow(p) ? std::exp(10 * (1 - J_plastic)) : 1;
+    return sample.points.volume[p]
+           * sim::visit(sample.points.model[sample.points.region[p]], [&](auto law) {
+                 return law.energy_density(
+                     matrix, harder * sample.points.mu[p], harder * sample.points.lambda[p]);
+             });
+}
+
+}  // namespace
+
 TEST_CASE("the energy of points is that of their deformation gradients") {
     const Kernel kernel = GENERATE(from_range(kernels));
     const auto [one, other] = GENERATE(from_range(laws));
@@ -70,33 +103,53 @@ TEST_CASE("the energy of points is that of their deformation gradients") {
     const double value = sample.energy->add_gradient(q, dt, gradient);
 
     double expected = 0;
-    std::vector<Mat3> D(sample.points.size());
-    sample.map.visit_gradients(
-        0,
-        CornerMap::Factor::Slope,
-        q,
-        [&](const CornerMap::Slaves& at, sim::Gradient* values) {
-            for (int slave = at.begin; slave < at.end; ++slave)
-                for (int j = 0; j < 3; ++j)
-                    D[sample.map.slave_corner()[slave]].col(j) =
-                        sim::unpadded(values[slave - at.begin].column[j]);
-        });
-    for (int p = 0; p < sample.points.size(); ++p) {
-        const Mat3 F =
-            (Mat3::Identity() + dt * D[p]) * Eigen::Map<const Mat3>(sample.state.F[p].m);
-        sim::Matrix3<double> matrix;
-        Eigen::Map<Mat3>(matrix.m) = F;
-        const double harder =
-            sample.points.is_snow(p) ? std::exp(10 * (1 - sample.state.J_plastic[p])) : 1;
-        expected +=
-            sample.points.volume[p]
-            * sim::visit(sample.points.model[sample.points.region[p]], [&](auto law) {
-                  return law.energy_density(
-                      matrix, harder * sample.points.mu[p], harder * sample.points.lambda[p]);
-              });
-    }
+    const std::vector<Mat3> D = gradients(sample, q);
+    for (int p = 0; p < sample.points.size(); ++p)
+        expected += energy_of(
+            sample,
+            p,
+            (Mat3::Identity() + dt * D[p]) * Eigen::Map<const Mat3>(sample.state.F[p].m),
+            sample.state.J_plastic[p]);
     REQUIRE(expected > 0);
     CHECK(value == Approx(expected).epsilon(1e-12));
+}
+
+TEST_CASE("snow yields at the end of each drift, and what has yielded moves on from there") {
+    // The way is that since the start of the step, so a drift leads on from the one before.
+    Sample sample(Kernel::Quadratic, sim::Model::StableNeoHookean, sim::Model::Snow);
+    sim::PointState expected =
+        sample.state;  // F where the step would have begun for what is left
+    const Field first = sample.motion(3e-3, 2),
+                both = tests::sum(first, 1, sample.motion(3e-3, 3));
+    std::vector<sim::Matrix3<double>> F(sample.points.size());
+    int n_yielded = 0;
+    for (const Field& way : {first, both}) {
+        Field gradient(way.size());
+        const double value = sample.energy->end_drift(way, gradient);
+        const std::vector<Mat3> D = gradients(sample, way);
+        double energy = 0;
+        for (int p = 0; p < sample.points.size(); ++p) {
+            Eigen::Map<Mat3>(F[p].m) =
+                (Mat3::Identity() + D[p]) * Eigen::Map<const Mat3>(expected.F[p].m);
+            const double before = expected.J_plastic[p];
+            if (sample.points.is_snow(p))
+                sim::yield(sample.points.snow[sample.points.region[p]],
+                           F[p],
+                           expected.F[p],
+                           expected.J_plastic[p]);
+            n_yielded += expected.J_plastic[p] != before;
+            energy +=
+                energy_of(sample, p, Eigen::Map<const Mat3>(F[p].m), expected.J_plastic[p]);
+        }
+        CHECK(value == Approx(energy).epsilon(1e-11));
+    }
+    CHECK(n_yielded > 20);
+    sample.energy->accept(sample.state);
+    for (int p = 0; p < sample.points.size(); ++p) {
+        const Eigen::Map<const Mat3> is(sample.state.F[p].m), wanted(F[p].m);
+        CHECK((is - wanted).norm() < 1e-12);
+        CHECK(sample.state.J_plastic[p] == Approx(expected.J_plastic[p]).epsilon(1e-12));
+    }
 }
 
 TEST_CASE("snow that has yielded again is as hard as snow that comes so") {
