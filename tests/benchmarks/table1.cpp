@@ -1,4 +1,5 @@
-// Every row of the paper's Table 1: its shot with its number of domains, grid and step, on one thread and on all. [Z18 §6]
+// Every row of the paper's Table 1: its shot with its number of domains, grid and step, on one thread and on all; with the
+// paper's contact, which is on the grid, and with contact of surfaces, which also sees where a body folds. [Z18 §6]
 // The whole shot is simulated, without pictures, by implicit steps, as the paper's are, and by explicit ones. A row's time is
 // that of the paper's dt in the shot, however many steps were taken for it: explicit ones are shorter where stability asks
 // for it. The paper prints minutes per frame and saves every 300 steps; where a frame is 1/30 s instead, both columns shrink
@@ -92,9 +93,21 @@ void keep_only(sim::Scene& scene, const std::string& body) {
     std::erase_if(scene.probes, [&](const sim::Probe& probe) { return probe.body != body; });
 }
 
+shots::Shot load(const Row& row, const std::string& steps, const std::string& contact) {
+    std::vector<std::string> overrides = row.overrides;
+    overrides.push_back("solver.steps=" + steps);
+    overrides.push_back("contact.mode=" + contact);
+    shots::Shot shot =
+        shots::load_shot(fmt::format("{}/shots/{}.toml", SOURCE_ROOT, row.shot), overrides);
+    if (!row.only_body.empty())
+        keep_only(shot.scene, row.only_body);
+    return shot;
+}
+
 /// On one thread the processor's time counts, as the machine may be shared; on several the clock's.
 void print_row(const Row& row,
                const std::string& steps,
+               const std::string& contact,
                const shots::Shot& shot,
                std::size_t n_threads) {
     const Timing timing = simulate(shot, n_threads);
@@ -102,11 +115,12 @@ void print_row(const Row& row,
                  seconds = (n_threads == 1 ? timing.processor : timing.wall)
                            * (dt / timing.simulated),
                  minutes = seconds * steps_per_frame / 60;
-    fmt::print("{},{},\"{}\",{},{},{},{},{},{:.1f},{:.4f},{:.3g},{:.5g},{:.0f}\n",
+    fmt::print("{},{},\"{}\",{},{},{},{},{},{},{:.1f},{:.4f},{:.3g},{:.5g},{:.0f}\n",
                row.figure,
                row.shot,
                row.method,
                steps,
+               contact,
                n_domains(shot.scene),
                dt,
                n_threads,
@@ -123,35 +137,34 @@ void print_row(const Row& row,
 
 int main(int argc, char** argv) {
     CLI::App app("Times the rows of the paper's Table 1; CSV on stdout");
-    std::vector<std::string> asked, kinds{"implicit", "explicit"};
+    std::vector<std::string> asked, kinds{"implicit", "explicit"}, modes{"grid", "surface"};
     std::vector<std::size_t> threads{
         1, static_cast<std::size_t>(tbb::info::default_concurrency())};
     app.add_option("row", asked, "Shots whose rows are timed; all where none is named");
     app.add_option("--steps", kinds, "Both where none is named")
         ->allow_extra_args(false)
         ->check(CLI::IsMember({"implicit", "explicit"}));
+    app.add_option("--contact", modes, "Both where none is named")
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember({"grid", "surface"}));
     app.add_option("--threads", threads, "1 and all where none is named")
         ->allow_extra_args(false)
         ->check(CLI::PositiveNumber);
     CLI11_PARSE(app, argc, argv);
     fmt::print(
-        "figure,shot,method,steps,domains,dt_s,threads,n_steps,cg_per_step,ms_per_dt,"
+        "figure,shot,method,steps,contact,domains,dt_s,threads,n_steps,cg_per_step,ms_per_dt,"
         "minutes_per_frame,paper_minutes_per_frame,times_faster\n");
     try {
         for (const Row& row : rows()) {
             if (!asked.empty()
                 && std::find(asked.begin(), asked.end(), row.shot) == asked.end())
                 continue;
-            for (const std::string& steps : kinds) {
-                std::vector<std::string> overrides = row.overrides;
-                overrides.push_back("solver.steps=" + steps);
-                shots::Shot shot = shots::load_shot(
-                    fmt::format("{}/shots/{}.toml", SOURCE_ROOT, row.shot), overrides);
-                if (!row.only_body.empty())
-                    keep_only(shot.scene, row.only_body);
-                for (const std::size_t n_threads : threads)
-                    print_row(row, steps, shot, n_threads);
-            }
+            for (const std::string& steps : kinds)
+                for (const std::string& contact : modes) {
+                    const shots::Shot shot = load(row, steps, contact);
+                    for (const std::size_t n_threads : threads)
+                        print_row(row, steps, contact, shot, n_threads);
+                }
         }
     } catch (const std::exception& error) {
         std::fflush(stdout);
