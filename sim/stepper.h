@@ -102,7 +102,7 @@ class Stepper {
     // step_contact.cpp: contact after the velocities are known
     std::vector<GridPair> pairs_on_grid() const;
     void begin_contact(const Field& x);
-    bool restrain_on_grid(const Field& x, double dt);
+    void restrain_on_grid(const Field& x, double dt);
     void drift(const Field& x_n, double length);
 
     // point_step.cpp: what points and APIC add to a step

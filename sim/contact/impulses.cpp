@@ -17,11 +17,7 @@ constexpr int most_sweeps = 100;
 Impulses::Impulses(const CornerMap& map,
                    const std::vector<double>& inverse_mass,
                    const Field& is_free)
-    : map_(map),
-      inverse_mass_(inverse_mass),
-      is_free_(is_free),
-      row_of_corner_(map.dof_of_corner().size()),
-      place_(map.n_dofs(), -1) {}
+    : map_(map), inverse_mass_(inverse_mass), is_free_(is_free) {}
 
 void Impulses::begin_drift(double dt) {
     dt_ = dt;
@@ -29,13 +25,19 @@ void Impulses::begin_drift(double dt) {
 }
 
 Impulses::Row Impulses::row_of(int corner) {
-    Row& row = row_of_corner_[corner];
-    if (row.last == row.first)
-        row = row_of({{Share{corner, 1}}});
-    return row;
+    if (row_of_corner_.empty())
+        row_of_corner_.assign(map_.dof_of_corner().size(), -1);
+    int& k = row_of_corner_[corner];
+    if (k < 0) {
+        k = static_cast<int>(rows_.size());
+        rows_.push_back(row_of({{Share{corner, 1}}}));
+    }
+    return rows_[k];
 }
 
 Impulses::Row Impulses::row_of(std::span<const Share> shares) {
+    if (place_.empty())
+        place_.assign(map_.n_dofs(), -1);
     const int first = static_cast<int>(weights_.size());
     for (const auto& [corner, factor] : shares) {
         map_.find_row(corner, row_);

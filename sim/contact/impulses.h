@@ -79,7 +79,9 @@ class Impulses {
     double dt_ = 0;
     std::vector<Impulse> impulses_;
     std::vector<CornerMap::Weight> weights_;
-    std::vector<Row> row_of_corner_;  // (#C) where it has been asked for
+    // Empty until a row is asked for: in most steps of most bodies nothing touches.
+    std::vector<int> row_of_corner_;  // (#C) in rows_, -1 where it has not been asked for
+    std::vector<Row> rows_;
     std::vector<int> place_;  // (#dofs) in weights_ of the sum that is being made, -1: none
     std::vector<CornerMap::Weight> row_;
     Field change_;  // (#dofs) of q
