@@ -44,7 +44,7 @@ bool Stepper::try_equilibrium(State& state,
     auto& step = potential_.step();
     step.dt = 1;  // degrees of freedom are displacements
     step.x_n = state.x;
-    step.mass.assign(n, Vec3p{});
+    step.mass.assign(n, 0);
     step.q_tilde.assign(n, Vec3p{});
     step.static_force = assembly_.force;
     step.is_free.assign(n, Vec3p{1, 1, 1, 0});

@@ -120,6 +120,10 @@ void Stepper::first_kick(const State& state) {
         q_moved_[i] =
             damped * (q_n_[i] + (dt_hat_ * inverse_mass_[i]) * (node_force_[i] - inner));
     }
+    hold_prescribed();
+}
+
+void Stepper::hold_prescribed() {
     for (const PrescribedDof& held : held_)
         q_moved_[held.dof] =
             q_moved_[held.dof] * potential_.step().is_free[held.dof] + held.velocity;
@@ -172,29 +176,26 @@ void Stepper::kick_between_drifts() {
                  kick = dt_hat_ * (damped + kept);
     for (std::size_t i = 0; i < inner_gradient_.size(); ++i)
         inner_gradient_[i] += gradient_before_[prescribed_.corners[i]];
-    corner_.resize(x_drift_.size());
-    for (const AssembledBody& body : assembly_.bodies)
-        if (!body.points)
-            for_chunks(body.end - body.begin, chunk, [&](int begin, int end) {
-                for (int c = body.begin + begin; c < body.begin + end; ++c)
-                    corner_[c] = assembly_.force[c] - gradient_before_[c];
-            });
-    gather_forces_at_nodes();
-    const Field& is_free = potential_.step().is_free;
-    for (int i = 0; i < map_.n_dofs(); ++i) {
-        const Vec3p inner = has_points_ ? grid_gradient_[i] : Vec3p{};
-        const Vec3p force =
-            i < map_.n_free() ? corner_[map_.free_corner()[i]] : node_force_[i] - inner;
-        const Vec3p q = kept * q_moved_[i] + (kick * inverse_mass_[i]) * force;
-        q_moved_[i] += is_free[i] * (q - q_moved_[i]);
-    }
+    const auto kicked = [&](int i, const Vec3p& force) {
+        return kept * q_moved_[i] + (kick * inverse_mass_[i]) * force;
+    };
+    for_chunks(map_.n_free(), chunk, [&](int begin, int end) {
+        for (int i = begin; i < end; ++i) {
+            const int c = map_.free_corner()[i];
+            q_moved_[i] = kicked(i, assembly_.force[c] - gradient_before_[c]);
+        }
+    });
+    gather_forces_at_nodes(gradient_before_);
+    for (int i = map_.n_free(); i < map_.n_dofs(); ++i)
+        q_moved_[i] = kicked(i, node_force_[i] - (has_points_ ? grid_gradient_[i] : Vec3p{}));
+    hold_prescribed();
 }
 
-void Stepper::gather_forces_at_nodes() {
+void Stepper::gather_forces_at_nodes(const Field& gradient) {
     // Of domains. What acts on points from outside stays as it was at the start of the step.
     for (std::size_t b = 0; b < points_.size(); ++b)
         if (!points_[b])
-            map_.gather_at_nodes(static_cast<int>(b), corner_, node_force_);
+            map_.gather_at_nodes(static_cast<int>(b), assembly_.force, gradient, node_force_);
 }
 
 bool Stepper::has_kept_way(const Field& x) const {
@@ -262,12 +263,10 @@ bool Stepper::restrain_by_surfaces(const State& state, double dt) {
 }
 
 double Stepper::second_kick(const Field& gradient_before) {
-    // v_end_ becomes the new velocity of free corners. Of slaves only the force, in corner_, is of use, for their nodes:
-    // kick_nodes() writes their velocity. Both are set for every corner, as free and slaved ones alternate so that a branch
-    // costs more. On the way the frequency of the motion.
+    // v_end_ becomes the new velocity of free corners; kick_nodes() writes that of slaves. It is set for every corner, as free
+    // and slaved ones alternate so that a branch costs more. On the way the frequency of the motion.
     const double damped = 1 / (1 + scene_.solver.damping * dt_hat_), length = 2 * dt_hat_;
     v_end_.resize(moved_.size());
-    corner_.resize(moved_.size());
     Vec3p sums{};
     for (const AssembledBody& body : assembly_.bodies) {
         if (body.points)
@@ -282,8 +281,7 @@ double Stepper::second_kick(const Field& gradient_before) {
                 force += inverse_mass * dg * dg;
                 strain += dx * dg;
                 motion += assembly_.mass[c] * dx * dx;
-                corner_[c] = assembly_.force[c] - end_gradient_[c];
-                const Vec3p kick = dt_hat_ * corner_[c];
+                const Vec3p kick = dt_hat_ * (assembly_.force[c] - end_gradient_[c]);
                 const Vec3p v = damped * (moved_[c] + inverse_mass * kick);
                 v_end_[c] = moved_[c] + is_free * (v - moved_[c]);
             }
@@ -304,7 +302,7 @@ void Stepper::kick_nodes(const State& state, double dt) {
     const auto& step = potential_.step();
     const double damped = 1 / (1 + scene_.solver.damping * dt_hat_),
                  keep = std::pow(damped, 2 * n_drifts_) * share_kept(dt);
-    gather_forces_at_nodes();
+    gather_forces_at_nodes(end_gradient_);
     for (int i = map_.n_free(); i < n; ++i) {
         const Vec3p inner = has_points_ ? grid_gradient_[i] : Vec3p{};
         const Vec3p v =

@@ -133,12 +133,13 @@ void IncrementalPotential::linearize(const Field& q, bool project) {
 
 double IncrementalPotential::hessian_product(const Field& p, Field& product) {
     const Field& u = map_.applied(p, corner_diagonal_);
-    for_elastic(corner_product_, [&](ElasticEnergy& elasticity, int begin) {
-        elasticity.product(&u[begin], &corner_product_[begin]);
+    Field& at_corners = map_.is_identity() ? product : corner_product_;
+    for_elastic(at_corners, [&](ElasticEnergy& elasticity, int begin) {
+        elasticity.product(&u[begin], &at_corners[begin]);
     });
     for (const ContactEnergy* contact : contacts_)
-        contact->add_product(u, corner_product_);
-    const Field& Ku = map_.applied_transposed(corner_product_, product);
+        contact->add_product(u, at_corners);
+    const Field& Ku = map_.applied_transposed(at_corners, product);
     for (const GridEnergy* grid : grids_)
         grid->add_product(p, product);
     const double dt_squared = step_.dt * step_.dt;

@@ -37,11 +37,12 @@ class IncrementalPotential : public Potential {
           contacts_(std::move(contacts)),
           grids_(std::move(grids)) {}
 
-    /// What a step starts from. `mass`, `q_tilde` and `is_held` are indexed by q; `x_n` and `static_force` by corner
+    /// What a step starts from. `mass`, `q_tilde` and `is_free` are indexed by q; `x_n` and `static_force` by corner
     /// (the latter empty in dynamics). is_free holds 1 in free components and 0 in prescribed ones.
     struct Step {
         double dt = 0;
-        Field x_n, mass, q_tilde, is_free, static_force;
+        std::vector<double> mass;  // [kg]
+        Field x_n, q_tilde, is_free, static_force;
     };
 
     Step& step() { return step_; }

@@ -129,7 +129,6 @@ void Stepper::transfer_to_nodes(const State& state, const Field& v, const Field*
     const int n = map_.n_dofs();
     const bool is_affine = scene_.solver.transfer == Transfer::Apic;
     corner_.resize(state.x.size());
-    acting_.resize(state.x.size());
     std::vector<RigidMotion> rigid(ranges_.size());
     for (std::size_t b = 0; b < ranges_.size(); ++b) {
         const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
@@ -173,23 +172,15 @@ void Stepper::transfer_to_nodes(const State& state, const Field& v, const Field*
 
 void Stepper::transfer_forces(const Field* inner) {
     // What acts on slaves, to nodes. Forces of insides act on corners alone: those of points go to nodes by themselves.
-    acting_.resize(assembly_.force.size());
     node_force_.resize(map_.n_dofs());
     for (std::size_t b = 0; b < ranges_.size(); ++b) {
         const AssembledBody& body = assembly_.bodies[b];
         if (body.points && body.has_weight_alone)
             continue;
-        const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
-        const bool has_inner = inner != nullptr && !body.points;
-        for_chunks(slaves.end - slaves.begin, chunk, [&](int begin, int end) {
-            for (int s = slaves.begin + begin; s < slaves.begin + end; ++s) {
-                const int c = map_.slave_corner()[s];
-                acting_[c] = assembly_.force[c];
-                if (has_inner)
-                    acting_[c] -= (*inner)[c];
-            }
-        });
-        map_.gather_at_nodes(static_cast<int>(b), acting_, node_force_);
+        if (inner != nullptr && !body.points)
+            map_.gather_at_nodes(static_cast<int>(b), assembly_.force, *inner, node_force_);
+        else
+            map_.gather_at_nodes(static_cast<int>(b), assembly_.force, node_force_);
     }
     const Vec3p gravity = padded(assembly_.gravity);
     for (int i = map_.n_free(); i < map_.n_dofs(); ++i) {
@@ -214,7 +205,7 @@ void Stepper::expect_free_motion() {
     for (int i = 0; i < n; ++i) {
         const double mass = damped * dof_mass_[i];
         step.q_tilde[i] = (q_n_[i] + dt_hat_ * inverse_mass_[i] * node_force_[i]) / damped;
-        step.mass[i] = Vec3p{mass, mass, mass, 0};
+        step.mass[i] = mass;
     }
     step.static_force.clear();
 }

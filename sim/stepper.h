@@ -139,7 +139,8 @@ class Stepper {
     bool take_drifts(const State& state, double length);
     bool drift_with_contact(const State& state, const Field& x, double time, double length);
     void kick_between_drifts();
-    void gather_forces_at_nodes();
+    void gather_forces_at_nodes(const Field& gradient);
+    void hold_prescribed();
     bool has_kept_way(const Field& x) const;
     bool is_clear_of_surfaces(const State& state, double dt);
     // Returns how deep a corner would have got in, in domain edges.
@@ -195,17 +196,15 @@ class Stepper {
     std::vector<NodeReaction> node_reactions_;
     // Of points in explicit steps, where a drift ends and where it began, and the way since the step did (#dofs)   [N], [m]
     Field grid_gradient_, grid_gradient_before_, way_;
-    Field moved_;  // (#C) velocity that moves the corners in this step [m/s]
-    // (#C) scratch of one function and what it calls; but kick_nodes() takes forces of second_kick() from it
-    Field corner_;
-    Field reaction_;                   // (#C) of pins [N]
-    Field x_end_;                      // (#C) where they end [m]
-    Field v_end_;                      // (#C) and how fast, of explicit steps [m/s]
-    Field acting_;                     // (#C) forces that go to nodes, at slaves alone [N]
-    std::vector<double> speed_;        // (#bodies) of the fastest corner [m/s]
-    Field gradient_, end_gradient_;    // of explicit steps, at the start and the end (#C) [N]
-    int n_drifts_ = 1;                 // of the step, if it is explicit
-    double quiet_drifts_ = 0;          // where it ends
+    Field moved_;                    // (#C) velocity that moves the corners in this step [m/s]
+    Field corner_;                   // (#C) scratch of one function and what it calls
+    Field reaction_;                 // (#C) of pins [N]
+    Field x_end_;                    // (#C) where they end [m]
+    Field v_end_;                    // (#C) and how fast, of explicit steps [m/s]
+    std::vector<double> speed_;      // (#bodies) of the fastest corner [m/s]
+    Field gradient_, end_gradient_;  // of explicit steps, at the start and the end (#C) [N]
+    int n_drifts_ = 1;               // of the step, if it is explicit
+    double quiet_drifts_ = 0;        // where it ends
     Field x_drift_, gradient_before_;  // where its last drift begins, of several (#C) [m], [N]
     Field inner_gradient_;  // Σ over what lies between its drifts, at prescribed corners [N]
     Field inner_at_nodes_;  // Σ over its drifts, at pinned nodes [N]

@@ -75,6 +75,9 @@ class CornerMap {
     /// q = Tᵀ f at the nodes of one body alone, where only slaves count.   f (#C), q (#dofs)
     void gather_at_nodes(int body, const Field& f, Field& q) const;
 
+    /// q = Tᵀ (f - g) there.   f, g (#C), q (#dofs)
+    void gather_at_nodes(int body, const Field& f, const Field& g, Field& q) const;
+
     /// T q and Tᵀ f, in `buffer` or, where T is the identity, without a copy.
     const Field& applied(const Field& q, Field& buffer) const;
     const Field& applied_transposed(const Field& f, Field& buffer) const;
@@ -161,19 +164,19 @@ class CornerMap {
     template <class Write>
     void visit_corners(const Field& q, const Write& write) const;
 
-    // corner_map_transposed.cpp
-    template <bool squared>
+    // corner_map_transposed.cpp, of value(corner)
+    template <bool squared, class Value>
     void gather_linear(const Part& part,
                        const Group& group,
                        const int* nodes,
-                       const Field& f,
+                       const Value& value,
                        Shares& shares) const;
-    template <class S, bool squared>
-    void gather(const Part& part, const Field& f, Field& q) const;
+    template <class S, bool squared, class Value>
+    void gather(const Part& part, const Value& value, Field& q) const;
     template <bool squared>
     void gather_all(const Field& f, Field& q) const;
-    template <bool squared>
-    void gather_nodes(const Part& part, const Field& f, Field& q) const;
+    template <bool squared, class Value>
+    void gather_nodes(const Part& part, const Value& value, Field& q) const;
 
     // corner_map_gradients.cpp
     template <class S>

@@ -35,26 +35,26 @@ struct Weighted {
 
 }  // namespace
 
-template <bool squared>
+template <bool squared, class Value>
 void CornerMap::gather_linear(const Part& part,
                               const Group& group,
                               const int* nodes,
-                              const Field& f,
+                              const Value& value,
                               Shares& shares) const {
     Vec3p sum[8] = {};
     for (int s = group.begin; s < group.end; ++s) {
         const auto& w8 = trilinear_weights_[part.first_trilinear + s];
-        const Vec3p value = f[slave_corner_[s]];
+        const Vec3p there = value(slave_corner_[s]);
 #pragma GCC unroll 8
         for (int a = 0; a < 8; ++a)
-            sum[a] += (squared ? w8[a] * w8[a] : w8[a]) * value;
+            sum[a] += (squared ? w8[a] * w8[a] : w8[a]) * there;
     }
     for (int a = 0; a < 8; ++a)
         shares.at(nodes[a]) += sum[a];
 }
 
-template <class S, bool squared>
-void CornerMap::gather(const Part& part, const Field& f, Field& q) const {
+template <class S, bool squared, class Value>
+void CornerMap::gather(const Part& part, const Value& value, Field& q) const {
     constexpr int n = S::n, per_group = n * n * n;
     const auto sum_chunk = [&](int begin, int end, Shares& shares) {
         thread_local std::vector<Weighted<S>> weighted;
@@ -62,12 +62,12 @@ void CornerMap::gather(const Part& part, const Field& f, Field& q) const {
             const Group& group = groups_[part.first_group + k];
             const int* nodes = &group_nodes_[part.first_entry + k * per_group];
             if constexpr (n == 2) {
-                gather_linear<squared>(part, group, nodes, f, shares);
+                gather_linear<squared>(part, group, nodes, value, shares);
                 continue;
             }
             weighted.clear();
             for (int s = group.begin; s < group.end; ++s)
-                weighted.emplace_back(slave_local_[s], f[slave_corner_[s]], squared);
+                weighted.emplace_back(slave_local_[s], value(slave_corner_[s]), squared);
             for (int c = 0; c < n; ++c, nodes += n * n) {
                 Vec3p sum[n * n] = {};
                 for (const Weighted<S>& slave : weighted)
@@ -80,11 +80,11 @@ void CornerMap::gather(const Part& part, const Field& f, Field& q) const {
     sum_groups(part, per_group, sum_chunk, q);
 }
 
-template <bool squared>
-void CornerMap::gather_nodes(const Part& part, const Field& f, Field& q) const {
+template <bool squared, class Value>
+void CornerMap::gather_nodes(const Part& part, const Value& value, Field& q) const {
     const auto nodes = q.begin() + n_free();
     std::fill(nodes + part.first_node, nodes + part.last_node, Vec3p{});
-    visit_spline(part.kernel, [&]<class S>(S) { gather<S, squared>(part, f, q); });
+    visit_spline(part.kernel, [&]<class S>(S) { gather<S, squared>(part, value, q); });
 }
 
 template <bool squared>
@@ -94,11 +94,18 @@ void CornerMap::gather_all(const Field& f, Field& q) const {
             q[k] = f[free_corner_[k]];
     });
     for (const Part& part : parts_)
-        gather_nodes<squared>(part, f, q);
+        gather_nodes<squared>(
+            part, [&](int c) { return f[c]; }, q);
 }
 
 void CornerMap::gather_at_nodes(int body, const Field& f, Field& q) const {
-    gather_nodes<false>(parts_[body], f, q);
+    gather_nodes<false>(
+        parts_[body], [&](int c) { return f[c]; }, q);
+}
+
+void CornerMap::gather_at_nodes(int body, const Field& f, const Field& g, Field& q) const {
+    gather_nodes<false>(
+        parts_[body], [&](int c) { return f[c] - g[c]; }, q);
 }
 
 void CornerMap::apply_transposed(const Field& f, Field& q) const {

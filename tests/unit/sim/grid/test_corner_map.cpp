@@ -195,6 +195,31 @@ TEST_CASE("the gathers are the transposes of T and of its squares") {
     }
 }
 
+TEST_CASE(
+    "the nodes of a body gather from its slaves alone, and differences as what is gathered "
+    "differs") {
+    tests::Random random(12);
+    const Sample s = sample(offsets[1]);
+    const Field f = tests::random_field(s.n_corners(), random),
+                g = tests::random_field(s.n_corners(), random);
+    Field all(s.map.n_dofs()), of_f(s.map.n_dofs()), of_g(s.map.n_dofs()),
+        difference(s.map.n_dofs());
+    s.map.apply_transposed(f, all);
+    for (int b = 0; b < static_cast<int>(s.bodies.size()); ++b) {
+        s.map.gather_at_nodes(b, f, of_f);
+        s.map.gather_at_nodes(b, g, of_g);
+        s.map.gather_at_nodes(b, f, g, difference);
+    }
+    REQUIRE(s.map.n_free() > 0);
+    REQUIRE(s.map.n_free() < s.map.n_dofs());
+    for (int i = 0; i < s.map.n_dofs(); ++i) {
+        const Vec3 expected = sim::unpadded(all[i]);
+        CHECK(sim::unpadded(of_f[i]) == (i < s.map.n_free() ? Vec3::Zero() : expected));
+        CHECK((sim::unpadded(difference[i]) - sim::unpadded(of_f[i] - of_g[i])).norm()
+              <= 1e-14);
+    }
+}
+
 TEST_CASE("T of what is zero at most nodes is that of all") {
     tests::Random random(17);
     Sample s = sample(offsets[1]);
