@@ -16,15 +16,16 @@ class LookAhead {
     bool stands(double change) const { return change < ahead_; }
 
     /// How far ahead it is made now: by `most`, or, as that would soon be used up where distances change much from one use to
-    /// the next, not at all.
+    /// the next, only so far that it stands where the same place is asked for again, or one that has hardly changed.
     double renew(double change, double most) {
-        ahead_ = change < n_uses_ * most_used * most ? most : 0;
+        ahead_ = change < n_uses_ * most_used * most ? most : least * most;
         n_uses_ = 0;
         return ahead_;
     }
 
   private:
     static constexpr double most_used = 0.3;  // of what is ahead, in one use
+    static constexpr double least = 0.05;     // of `most`
 
     double ahead_ = 0;
     int n_uses_ = 0;  // since it was made

@@ -149,7 +149,7 @@ TEST_CASE("lists of near domains miss none while bodies pass each other at any s
     const Three three;
     sim::NearDomainLists lists(three.surfaces);
     const double step = GENERATE(0.012, 0.02, 1.1) * edge;
-    std::size_t n_pairs = 0, n_contacts = 0, n_more = 0;
+    std::size_t n_pairs = 0, n_contacts = 0, n_rolling = 0, n_more = 0;
     for (double way = -8 * edge; way < 8 * edge; way += step) {
         // All fly as well, each swings, and the ball rolls over the block's top, pressed into it.
         const Vec3 flight(20 * way, -3 * way, way);
@@ -175,13 +175,15 @@ TEST_CASE("lists of near domains miss none while bodies pass each other at any s
             const std::vector<int> all = of_a.all_vertices();
             CHECK(are_equal(found, sim::find_contacts(of_a, all, of_b, x, x, margin)));
             n_pairs += expected.size();
+            n_rolling += a + b == 1 ? expected.size() : 0;
             n_more += a + b == 1 ? pairs.size() - expected.size() : 0;
             n_contacts += found.size();
         }
     }
     CHECK(n_pairs > 500);
     CHECK(n_contacts > 50);
-    CHECK((n_more > 0) == (step < edge));  // of fast ones nothing is listed ahead
+    // Of fast ones little is listed ahead.
+    CHECK((n_more > n_rolling / 10) == (step < edge));
 }
 
 TEST_CASE("a domain that swells to a vertex is listed in time") {
