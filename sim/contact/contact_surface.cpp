@@ -99,6 +99,7 @@ ContactSurface::ContactSurface(const Body& body,
         const double mu = lattice->mu[p], lambda = lattice->lambda[p];
         ContactVertex vertex;
         vertex.rest = points[i];
+        vertex.domain = p;
         vertex.weights = bindings[i].weights;
         vertex.area = samples[i].area;
         vertex.young_modulus = mu * (3 * lambda + 2 * mu) / (lambda + mu);

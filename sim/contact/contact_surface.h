@@ -14,6 +14,7 @@ namespace sim {
 /// A point of the body's surface, carried by the corners of its domain.
 struct ContactVertex {
     Vec3 rest{0, 0, 0};               // [m]
+    int domain = 0;                   // that carries it
     std::array<int, 8> corners{};     // in the field of all corners
     std::array<double, 8> weights{};  // sum to 1
     double area = 0;                  // of the surface that it stands for, at rest [m²]

@@ -13,11 +13,12 @@ namespace {
 
 constexpr double beyond_domain = 0.25;  // that strangers are continued, in their edges
 constexpr double watched = 0.9;         // gaps of vertices that are listed, in domain edges
-constexpr int chunk = 64;
+constexpr int chunk = 8;                // of leaves
 
 }  // namespace
 
-FoldWatch::FoldWatch(const ContactSurface& surface) : surface_(&surface), vertices_(surface) {
+FoldWatch::FoldWatch(const ContactSurface& surface)
+    : surface_(&surface), tree_(surface, beyond_domain, neighbourhood * surface.lattice->edge) {
     const Lattice& lattice = *surface.lattice;
     const double of_continued = std::pow(1 + 2 * beyond_domain, 3);
     of_strain_ = (surface.largest_weight_sum - 1) / 2 + (of_continued - 1) / 2;
@@ -74,12 +75,12 @@ double FoldWatch::most_strained() const {
 }
 
 void FoldWatch::look(double within) {
-    vertices_.place(*surface_, seen_);
-    const int n = static_cast<int>(surface_->shell.size());
+    tree_.place(seen_, within);
+    const int n = tree_.n_groups();
     std::vector<std::vector<Near>> parts((n + chunk - 1) / chunk);
     for_chunks(n, chunk, [&](int begin, int end) {
-        for (int k = begin; k < end; ++k)
-            look_at(surface_->shell[k], within, parts[begin / chunk]);
+        for (int group = begin; group < end; ++group)
+            look_at(group, within, parts[begin / chunk]);
     });
     nearest_.clear();
     for (const std::vector<Near>& part : parts)
@@ -87,25 +88,21 @@ void FoldWatch::look(double within) {
     looked_at_ = seen_;
 }
 
-void FoldWatch::look_at(int p, double within, std::vector<Near>& near) const {
-    std::array<Vec3p, 8> corners;
-    for (int a = 0; a < 8; ++a)
-        corners[a] = seen_[surface_->lattice->corners[p][a]];
-    go_beyond(beyond_domain, corners);
-    PaddedBounds bounds;
-    for (const Vec3p& corner : corners)
-        bounds.add(corner);
-    const double stranger = neighbourhood * surface_->lattice->edge;
-    const Vec3 centre = surface_->domain_centre(p);  // at rest
+void FoldWatch::look_at(int group, double within, std::vector<Near>& near) const {
     std::optional<Hull> hull;
-    vertices_.for_strangers_near(bounds, within, centre, stranger, [&](int v) {
-        if ((surface_->vertices[v].rest - centre).squaredNorm() < stranger * stranger)
-            return;
-        if (!hull)
+    int of_hull = -1;
+    tree_.for_strangers(group, [&](int v, const Vec3p& x, int q) {
+        if (q != of_hull) {
+            std::array<Vec3p, 8> corners;
+            for (int a = 0; a < 8; ++a)
+                corners[a] = seen_[surface_->lattice->corners[q][a]];
+            go_beyond(beyond_domain, corners);
             hull.emplace(corners);
-        const double gap = hull->gap(vertices_.at(v));
+            of_hull = q;
+        }
+        const double gap = hull->gap(x);
         if (gap <= within)
-            near.push_back({v, p, gap});
+            near.push_back({v, q, gap});
     });
 }
 

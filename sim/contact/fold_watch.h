@@ -3,7 +3,7 @@
 
 #include "sim/contact/look_ahead.h"
 #include "sim/contact/own_frame.h"
-#include "sim/contact/vertex_grid.h"
+#include "sim/contact/shell_tree.h"
 
 #include <vector>
 
@@ -36,7 +36,7 @@ class FoldWatch {
     double see(const Field& x);
     double most_strained() const;  // corners of a domain since the last look [m]
     void look(double within);
-    void look_at(int p, double within, std::vector<Near>& near) const;
+    void look_at(int group, double within, std::vector<Near>& near) const;
     bool is_in(const Near& near, const Field& x) const;
 
     const ContactSurface* surface_;
@@ -45,7 +45,7 @@ class FoldWatch {
     // they part.
     double of_strain_ = 0;
     Field from_rest_centre_;  // (#corners) [m]
-    VertexGrid vertices_;
+    ShellTree tree_;
 
     OwnFrame now_;  // of the last x
     // When all corners were last seen: their places (#corners), in the body's own frame as well, that frame, how far they

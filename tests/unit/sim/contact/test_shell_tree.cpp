@@ -1,6 +1,6 @@
 #include "sim/contact/domain_hull.h"
 #include "sim/contact/own_frame.h"
-#include "sim/contact/vertex_grid.h"
+#include "sim/contact/shell_tree.h"
 #include "tests/support/box_body.h"
 #include "tests/support/random_fields.h"
 
@@ -8,6 +8,8 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 using sim::Field;
 using sim::Vec3p;
@@ -18,45 +20,52 @@ constexpr double edge = 0.05;
 
 }  // namespace
 
-TEST_CASE("a grid of vertices finds the strangers near a box that a loop over vertices finds") {
-    const sim::Body body = tests::box_body({4, 3, 3}, edge);
+TEST_CASE("a tree of a shell finds the strangers near domains that loops over both find") {
+    const sim::Body body = tests::box_body({9, 4, 3}, edge);
     const sim::Lattice lattice = sim::make_lattice(body);
     const int begin = 5;
     const sim::ContactSurface surface(body, lattice, begin, 0);
-    sim::VertexGrid grid(surface);
+    const double beyond = 0.25, apart = 2.5 * edge;
+    sim::ShellTree tree(surface, beyond, apart);
 
     tests::Random random(3);
-    Field corners;
-    for (const Vec3& X : lattice.corner_rest)
-        corners.push_back(sim::padded(X + tests::random_vector(random, 0.2 * edge)));
-    grid.place(surface, corners);
-    Field all(begin);
-    all.insert(all.end(), corners.begin(), corners.end());
     std::size_t n_found = 0;
-    for (int repeat = 0; repeat < 50; ++repeat) {
-        const Vec3 middle = edge * Vec3(2, 1.5, 1.5) + tests::random_vector(random, 2 * edge),
-                   half = edge * Vec3(0.2, 0.4, 0.6),
-                   centre = edge * Vec3(2, 1.5, 1.5) + tests::random_vector(random, 2 * edge);
-        sim::PaddedBounds box;
-        box.add(sim::padded(middle - half));
-        box.add(sim::padded(middle + half));
-        const double within = 0.6 * edge, least = 1.7 * edge;
-        std::vector<int> found, expected;
-        grid.for_strangers_near(box, within, centre, least, [&](int v) { found.push_back(v); });
-        for (const int v : surface.all_vertices()) {
-            const Vec3 from_middle = surface.vertices[v].position(all) - middle;
-            if ((from_middle.cwiseAbs() - half).maxCoeff() < within
-                && (surface.vertices[v].rest - centre).norm() >= least)
-                expected.push_back(v);
+    for (const double pressed : {1.0, 0.5, 0.25}) {
+        Field corners;
+        for (const Vec3& X : lattice.corner_rest)
+            corners.push_back(sim::padded(Vec3(pressed * X.x(), X.y(), X.z())
+                                          + tests::random_vector(random, 0.2 * edge)));
+        Field all(begin);
+        all.insert(all.end(), corners.begin(), corners.end());
+        for (const double within : {0.0, 0.6 * edge}) {
+            std::vector<std::pair<int, int>> found, expected;
+            tree.place(corners, within);
+            for (int group = 0; group < tree.n_groups(); ++group)
+                tree.for_strangers(group, [&](int v, const Vec3p& x, int q) {
+                    found.emplace_back(v, q);
+                    // Sums in another order.
+                    CHECK((sim::unpadded(x) - surface.vertices[v].position(all)).norm()
+                          <= 1e-14);
+                });
+            for (const int q : surface.shell) {
+                std::array<Vec3p, 8> continued = surface.domain_corners(q, all);
+                sim::go_beyond(beyond, continued);
+                sim::PaddedBounds box;
+                for (const Vec3p& corner : continued)
+                    box.add(corner);
+                for (const int v : surface.all_vertices())
+                    if ((surface.vertices[v].rest - surface.domain_centre(q)).norm() >= apart
+                        && box.widened(within).holds(surface.vertices[v].padded_position(all)))
+                        expected.emplace_back(v, q);
+            }
+            std::sort(found.begin(), found.end());
+            std::sort(expected.begin(), expected.end());
+            CAPTURE(pressed, within);
+            CHECK(found == expected);
+            n_found += found.size();
         }
-        std::sort(found.begin(), found.end());
-        CHECK(found == expected);
-        n_found += found.size();
     }
-    CHECK(n_found > 100);
-    for (const int v : surface.all_vertices())
-        // Sums in another order.
-        CHECK((sim::unpadded(grid.at(v)) - surface.vertices[v].position(all)).norm() <= 1e-14);
+    CHECK(n_found > 1000);
 }
 
 TEST_CASE("a hull's gap is that along the axis or diagonal that parts a point most") {
