@@ -54,9 +54,19 @@ void require_same_fingerprint(const Shot& shot) {
                         folder.string()));
 }
 
-/// Pictures per second: every second frame plays half as often, so that time passes as it should.
-double playback_rate(const std::vector<Picture>& pictures, double fps) {
-    return fps / (pictures[1].frame - pictures[0].frame);
+/// Pictures per second: every second frame plays half as often, so that time passes as it should. Throws where frames are
+/// at uneven distances.
+double playback_rate(const std::vector<int>& frames, double fps) {
+    const int step = frames.size() > 1 ? frames[1] - frames[0] : 1;
+    for (std::size_t k = 1; k < frames.size(); ++k)
+        if (frames[k] - frames[k - 1] != step)
+            throw assets::Error(
+                assets::ErrorKind::Input,
+                fmt::format(
+                    "frames {} do not play at an even rate: choose every one of a range, as "
+                    "in \"1-48\" or \"1-48x2\", or use supple render",
+                    fmt::join(frames, ", ")));
+    return fps / step;
 }
 
 }  // namespace
@@ -84,6 +94,7 @@ void film_command(const Request& request) {
     const Shot shot = requested_shot(request);
     Progress progress(progress_style(request.quiet));
     EncodeJob job;
+    job.rate = playback_rate(requested_frames(request, shot), shot.fps);
     with_places(shot, [&] {
         run_sim(request, shot, progress);
         job.pictures = run_render(request, shot, progress);
@@ -93,7 +104,6 @@ void film_command(const Request& request) {
         print_path("picture", job.pictures.front().file, request.json);
         return;
     }
-    job.rate = playback_rate(job.pictures, shot.fps);
     job.film = shot.output / (shot.name + ".mp4");
     encode(job, progress);
     print_path("film", job.film, request.json);

@@ -84,7 +84,7 @@ bool Stepper::minimize_with_contact(const NewtonOptions& options, int most_passe
             continue;
         if (summary_.termination != Termination::Converged)
             return false;
-        if (pass == most_passes || surfaces_.empty()
+        if (pass >= most_passes || surfaces_.empty()
             || surfaces_.relinearize(potential_.positions()) < depth_tolerance)
             return true;
     }

@@ -1,12 +1,13 @@
 #include "sim/rigid_motion.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include <array>
 
 namespace sim {
 
-RigidMotion rigid_motion(const Field& m, const Field& x, const Field& v, int begin, int end) {
+RigidMotion rigid_motion(
+    const Field& m, const Field& x, const Field& v, int begin, int end, double thin) {
     RigidMotion rigid;
     double mass = 0;
     for (int c = begin; c < end; ++c) {
@@ -30,7 +31,13 @@ RigidMotion rigid_motion(const Field& m, const Field& x, const Field& v, int beg
     Mat3 second_moment;
     second_moment << unpadded(rr[0]), unpadded(rr[1]), unpadded(rr[2]);
     const Mat3 inertia = second_moment.trace() * Mat3::Identity() - second_moment;
-    rigid.spin = padded(inertia.ldlt().solve(L));
+    const Eigen::SelfAdjointEigenSolver<Mat3> principal(inertia);
+    for (int k = 0; k < 3; ++k) {
+        const Vec3 axis = principal.eigenvectors().col(k);
+        const double about_axis = principal.eigenvalues()[k];
+        if (about_axis > mass * thin * thin)
+            rigid.spin += padded(axis.dot(L) / about_axis * axis);
+    }
     return rigid;
 }
 

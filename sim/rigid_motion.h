@@ -12,7 +12,10 @@ struct RigidMotion {
     Vec3p at(const Vec3p& x) const { return velocity + cross(spin, x - centre); }
 };
 
-/// The one with the linear and angular momentum of the masses m at x moving with v, over corners [begin, end).
-RigidMotion rigid_motion(const Field& m, const Field& x, const Field& v, int begin, int end);
+/// The one with the linear and angular momentum of the masses m at x moving with v, over corners [begin, end). About an
+/// axis from which they are no further than `thin` in the mean (radius of gyration), as points in a row are about it, it does
+/// not turn: what rounding leaves of both would give any spin.   [kg], [m], [m/s], [m]
+RigidMotion rigid_motion(
+    const Field& m, const Field& x, const Field& v, int begin, int end, double thin);
 
 }  // namespace sim

@@ -4,15 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace sim {
 
 namespace {
 
-constexpr double growth = 1.1;           // of a step after one that succeeded
-constexpr double shortest = 1e-3;        // step worth trying, as a share of dt
-constexpr double rounding = 1e-6;        // of a number of steps
-constexpr int life_of_map = 8;           // of one that explicit drifts share, at most, in dt
+constexpr double growth = 1.1;      // of a step after one that succeeded
+constexpr double shortest = 1e-3;   // step worth trying, as a share of dt
+constexpr double most_steps = 1e8;  // to one end: days, or for ever where time hardly moves
+constexpr double rounding = 1e-6;   // of a number of steps
+constexpr int life_of_map = 8;      // of one that explicit drifts share, at most, in dt
 constexpr double cells_under_map = 0.1;  // that a slaved corner may pass meanwhile
 constexpr int quiet_per_drift = 2;       // since the last touch, for each drift of a step
 
@@ -41,6 +43,14 @@ void Stepper::advance(State& state, double end, double dt) {
                       surfaces_.largest_step(start, longest),
                       relative_limit(state)});
         const double n = std::max(1.0, std::ceil(remaining / allowed - rounding));
+        if (n > most_steps)
+            throw assets::Error(assets::ErrorKind::Diverged,
+                                fmt::format("at {} s: {:.0e} steps of {} s to the end of the "
+                                            "frame; dt is too short, or "
+                                            "so stiff, light or fast a body asks for it",
+                                            state.time,
+                                            n,
+                                            remaining / n));
         const double length = remaining / n;
         n_drifts_ = std::max(1, static_cast<int>(std::ceil(length / drift - rounding)));
         if (try_step(state, length)) {

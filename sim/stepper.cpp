@@ -10,6 +10,8 @@ namespace sim {
 namespace {
 
 constexpr int chunk = 8192;
+constexpr double thin =
+    0.01;  // what does not turn about its own axis: a body no thicker than that, in cells
 constexpr double forgetting = 1;  // rate at which a body's top speed fades [1/s]
 
 double energy_scale(const Lattice& lattice) {
@@ -134,7 +136,9 @@ void Stepper::transfer_to_nodes(const State& state, const Field& v, const Field*
         const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
         if (slaves.begin == slaves.end)
             continue;
-        rigid[b] = rigid_motion(assembly_.mass, state.x, v, ranges_[b].begin, ranges_[b].end);
+        const CornerMap::BodyRange& range = ranges_[b];
+        rigid[b] = rigid_motion(
+            assembly_.mass, state.x, v, range.begin, range.end, thin * range.cell_size);
         for_chunks(slaves.end - slaves.begin, chunk, [&](int begin, int end) {
             for (int s = slaves.begin + begin; s < slaves.begin + end; ++s) {
                 const int c = map_.slave_corner()[s];

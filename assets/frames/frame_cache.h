@@ -121,6 +121,9 @@ class FrameCacheReader {
 
     const std::string& fingerprint_digest() const { return digest_; }
 
+    /// Of surfaces(), identifies them for image stamps.
+    const std::string& surfaces_checksum() const { return surfaces_checksum_; }
+
     /// Planned frames whose file exists (not yet verified).
     std::vector<int> frames() const;
 
@@ -137,7 +140,7 @@ class FrameCacheReader {
     std::filesystem::path folder_;
     std::vector<CachedSurface> surfaces_;
     std::vector<int> planned_frames_;
-    std::string digest_;
+    std::string digest_, surfaces_checksum_;
 };
 
 /// Writes `bytes` to `path` through a temporary file in the same folder, flush and rename. Throws

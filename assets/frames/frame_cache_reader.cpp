@@ -41,6 +41,7 @@ FrameCacheReader::FrameCacheReader(std::filesystem::path folder) : folder_(std::
                     fmt::format("{} holds no frames: simulate first", folder_.string()));
     planned_frames_ = manifest->frame_numbers;
     digest_ = manifest->digest;
+    surfaces_checksum_ = manifest->surfaces_checksum;
     surfaces_ = decode_surfaces(unpack(folder_ / surfaces_name, FileKind::Surfaces));
 }
 

@@ -58,8 +58,12 @@ void write_manifest(const std::filesystem::path& folder, const Manifest& manifes
 std::optional<Manifest> read_manifest(const std::filesystem::path& folder) {
     const std::filesystem::path path = folder / manifest_name;
     std::ifstream file(path);
-    if (!file)
+    if (!file) {
+        if (std::error_code ignored; std::filesystem::symlink_status(path, ignored).type()
+                                     != std::filesystem::file_type::not_found)
+            refuse(path, "cannot be read");
         return {};
+    }
     try {
         return parse(path, Json::parse(file));
     } catch (const Json::exception&) {

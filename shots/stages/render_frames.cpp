@@ -53,6 +53,7 @@ std::vector<Picture> planned_pictures(const RenderJob& job,
                                       const assets::FrameCacheReader& cache,
                                       const std::vector<int>& cached) {
     assets::Fingerprint stamp{{"options", render::picture_key(job.options)},
+                              {"surfaces", cache.surfaces_checksum()},
                               {"bounds", bounds_text(cache, cached)}};
     std::vector<Picture> pictures;
     for (const int number : job.frames) {

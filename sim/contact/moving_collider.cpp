@@ -83,10 +83,6 @@ concept HasFormula = requires(const Kind& kind, const Vec3& x) {
     distance_to(kind, x);
 };
 
-Eigen::Quaterniond rotation_of(const ColliderKey& key) {
-    return Eigen::Quaterniond(assets::rotation(key.rotate));
-}
-
 }  // namespace
 
 assets::Source collider_source(const Collider& collider) {
@@ -136,7 +132,7 @@ Pose MovingCollider::pose(double time) const {
     const double t = to.time > from.time ? (time - from.time) / (to.time - from.time) : 1;
     const double share = std::clamp(t, 0.0, 1.0);
     pose.translate = from.translate + share * (to.translate - from.translate);
-    pose.R = rotation_of(from).slerp(share, rotation_of(to)).toRotationMatrix();
+    pose.R = assets::rotation(from.rotate + share * (to.rotate - from.rotate));
     return pose;
 }
 

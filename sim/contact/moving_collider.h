@@ -30,8 +30,8 @@ class MovingCollider {
     /// Error(Input) where a mesh is not closed.
     MovingCollider(const Collider& collider, double resolution, double reach = 0);
 
-    /// Between keys translation is linear and rotation turns evenly about the shape's centre; before the first key and
-    /// after the last it stands still.
+    /// Between keys translation and the angles, about the shape's centre, are linear, so that a shape may turn by more than
+    /// half a turn from one to the next; before the first key and after the last it stands still.
     Pose pose(double time) const;
 
     struct Distance {

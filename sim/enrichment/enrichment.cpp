@@ -146,7 +146,8 @@ void Enrichment::update(const Lattice& lattice, const Vec3p* corners, char* free
 void Enrichment::find_centres(const Lattice& lattice, const Vec3p* corners) {
     const int n = lattice.n_domains();
     centres_.resize(n);
-    Vec3p low{}, high{};
+    Vec3p low{}, high{},
+        total{};  // not finite where a corner is not: comparisons alone would pass over it
     for (int p = 0; p < n; ++p) {
         Vec3p sum{};
         for (const int c : lattice.corners[p])
@@ -156,11 +157,13 @@ void Enrichment::find_centres(const Lattice& lattice, const Vec3p* corners) {
             low = high = centre;
         low = centre < low ? centre : low;
         high = centre > high ? centre : high;
+        total += centre;
         centres_[p] = centre;
     }
     low_ = floor_of(low) - to_all;  // the margin may reach one cell further
     const Vec3p size = floor_of(high) - low_ + 2 * to_all;
-    if (!(size[0] * size[1] * size[2] < most_cells))
+    if (!(size[0] * size[1] * size[2] < most_cells)
+        || !std::isfinite(total[0] + total[1] + total[2]))
         throw assets::Error(
             assets::ErrorKind::Diverged,
             "a body spreads over more background cells than can be held; it has flown apart");

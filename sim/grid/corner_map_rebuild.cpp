@@ -14,7 +14,8 @@ namespace sim {
 namespace {
 
 constexpr double most_cells = 1 << 28;
-constexpr int word = 64;  // bits
+constexpr double widest_kernel = 4;  // nodes along an axis
+constexpr int word = 64;             // bits
 
 Vec3p in_all_axes(double v) {
     return Vec3p{v, v, v, 0};
@@ -109,7 +110,8 @@ CornerMap::Box CornerMap::box_of_slaves(const Field& corners,
         sum += cell;
     }
     const Vec3p extent = high - box.low + 1.0;
-    if (!(extent[0] * extent[1] * extent[2] < most_cells)
+    const Vec3p nodes = extent + widest_kernel;
+    if (!(nodes[0] * nodes[1] * nodes[2] < most_cells)
         || !std::isfinite(sum[0] + sum[1] + sum[2]))
         throw assets::Error(
             assets::ErrorKind::Diverged,

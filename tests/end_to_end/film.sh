@@ -39,6 +39,18 @@ expect_exit 2 "$supple" render "$tiny" --set body.bar.region.soft.young_modulus=
 expect_exit 0 "$supple" film "$tiny" --set body.bar.region.soft.young_modulus=50e3 --overwrite
 [ "$(content out/tiny/cache)" != "$cache" ] || fail "another modulus gave the same frames"
 
+# Another colour, simulated again, needs new pictures of the same motion.
+recoloured=(--set 'body.bar.region.soft.color=[0, 1, 0]')
+expect_exit 0 "$supple" film "$tiny" --out coloured
+pictures=$(content coloured/images)
+expect_exit 0 "$supple" sim "$tiny" --out coloured --overwrite "${recoloured[@]}"
+expect_exit 0 "$supple" render "$tiny" --out coloured "${recoloured[@]}"
+[ "$(content coloured/images)" != "$pictures" ] || fail "another colour gave the same pictures"
+
+# Frames at uneven distances would play at a speed of their own.
+expect_exit 2 "$supple" film "$tiny" --frames 1,2,4 --out uneven
+grep -q 'frames 1, 2, 4' err.txt || fail "the uneven frames are not named"
+
 # One frame makes no film.
 expect_exit 0 "$supple" film "$tiny" --frames 1 --out one
 [ "$(cat out.txt)" = one/images/tiny.0001.png ] || fail "one frame: $(cat out.txt)"

@@ -153,3 +153,16 @@ TEST_CASE("a damaged manifest is refused by name, but gives way to --overwrite")
     FrameCacheWriter(folder.path(), fingerprint, numbers, surfaces, true);
     CHECK(read_file(path) == whole);
 }
+
+TEST_CASE("a manifest that is there but cannot be read is no empty folder: frames stay") {
+    const TemporaryFolder folder;
+    write_cache(folder.path());
+    const auto path = folder.path() / "manifest.json";
+    std::filesystem::remove(path);
+    std::filesystem::create_symlink(path, path);  // a loop, which nobody can open
+    CHECK_THROWS_WITH(FrameCacheWriter(folder.path(), fingerprint, numbers, surfaces, false),
+                      Contains("manifest.json cannot be read"));
+    CHECK_THROWS_WITH(FrameCacheReader(folder.path()),
+                      Contains("manifest.json cannot be read"));
+    CHECK(std::filesystem::exists(folder.path() / "frame.0001.bin"));
+}

@@ -92,3 +92,14 @@ TEST_CASE("the thickness is the smallest extent") {
     CHECK(MovingCollider({shapes[1], {}}, 0.1).thickness() == Approx(2));
     CHECK(std::isinf(MovingCollider({sim::PlaneShape{}, {}}, 0.1).thickness()));
 }
+
+TEST_CASE("a shape makes all the turns that its keys ask for") {
+    Collider collider{assets::Shape{assets::Box{{0, 0, 0}, {2, 2, 4}}}, {}};
+    collider.keys = {{0, {0, 0, 0}, {0, 0, 0}}, {1, {0, 0, 0}, {0, 0, 6 * quarter_turn}}};
+    const MovingCollider moving(collider, 0.1);
+    for (const double time : {0.0, 0.1, 1.0 / 6, 0.5, 0.9, 1.0}) {
+        const double angle = 6 * quarter_turn * time;
+        const Vec3 expected(1 + std::cos(angle), 1 + std::sin(angle), 0);
+        CHECK((moving.pose(time).carry({2, 1, 0}) - expected).norm() < 1e-12);
+    }
+}
