@@ -11,6 +11,8 @@ namespace {
 
 constexpr int chunk = 8192;
 constexpr double armijo = 1e-4;  // share of the predicted decrease that a step must bring
+constexpr double single_step =
+    0.5;  // of the gradient, that a step without a line search may leave
 constexpr double value_rounding = 1e-13;  // of W, relative
 constexpr int max_halvings = 30;
 
@@ -146,9 +148,11 @@ NewtonSummary minimize(Potential& potential,
             ++summary.iterations;
             value = potential.value_and_gradient(q, s.gradient);
             scale = std::max(scale, potential.gradient_scale());
-            summary.residual = relative(scaled_norm(s.gradient, potential.inverse_diagonal()));
-            summary.termination =
-                std::isfinite(value) ? Termination::Converged : Termination::NotFinite;
+            const double left = scaled_norm(s.gradient, potential.inverse_diagonal());
+            summary.residual = relative(left);
+            summary.termination = !std::isfinite(value)        ? Termination::NotFinite
+                                  : left <= single_step * norm ? Termination::Converged
+                                                               : Termination::IterationLimit;
             return summary;
         }
         const double length = search_line(potential, q, value, s, trial_value);

@@ -12,7 +12,7 @@ struct NewtonOptions {
     int max_iterations = 50;         // >= 1
     double first_forcing = 0;        // relative tolerance of the first linear solve; 0: what the goal asks for
     int max_linear_iterations = 20000;
-    bool line_search = true;         // false: the full step is taken, whatever it brings
+    bool line_search = true;         // false: one full step, converged if it halves the gradient
 };
 
 enum class Termination { Converged, IterationLimit, LineSearchFailed, LinearSolveFailed, NotFinite, Unstable };
