@@ -13,7 +13,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double stiffness = 40;  // k / (E A / s): depth s/40 under a pressure E
 constexpr double wave_factor =
-    8;  // of speed over wave speed, where bodies meet faster than that
+    32;  // of speed over wave speed, where bodies meet faster than that
 constexpr int most_looks =
     8;  // at a body on its way; one that moves by more domain edges in itself is not waited for
 constexpr double share_of_thickness = 0.4;  // that bodies may approach in a step
@@ -21,7 +21,8 @@ constexpr double rest_recovery =
     0.1;  // of a gap that had to be shifted, in domain edges per second
 constexpr double impact_recovery =
     0.25;  // the same, as a share of the speed at which bodies may meet
-constexpr double rounding = 1e-12;  // of speeds
+constexpr double same_plane = 0.97;  // cosine between the normals of what is one plane, bent
+constexpr double rounding = 1e-12;   // of speeds
 constexpr double least_margin =
     0.25;  // around bodies where vertices are looked at, in domain edges
 
@@ -129,6 +130,7 @@ void SurfaceContact::see_end(const Field& x) {
 }
 
 void SurfaceContact::begin_step(const Start& start, const Field& x_expected, double dt) {
+    n_linearized_ = 0;
     x_n_ = start.x;
     held_ = start.held;
     dt_ = dt;
@@ -215,32 +217,49 @@ std::vector<HeldContact> SurfaceContact::held(const Field& x) const {
 double SurfaceContact::relinearize(const Field& x) {
     const std::vector<Contact> before = std::move(contacts_);
     find(x);
-    return mismatch(before, contacts_, x);
+    const double worst = mismatch(before, contacts_, x);
+    if (++n_linearized_ > 1)
+        keep(before);
+    return worst;
 }
 
 double SurfaceContact::mismatch(const std::vector<Contact>& before,
                                 const std::vector<Contact>& after,
                                 const Field& x) {
     // One that is in only one of them has no depth in the other.
-    const auto is_before = [](const Contact& a, const Contact& b) {
-        return a.pair != b.pair ? a.pair < b.pair : a.index < b.index;
-    };
-    const auto depth = [&](const Contact& contact) {
-        return contact.depth(contact.separation(x)) / contact.edge;
-    };
     double worst = 0;
-    auto old = before.begin();
-    for (const Contact& contact : after) {
-        for (; old != before.end() && is_before(*old, contact); ++old)
-            worst = std::max(worst, depth(*old));
-        const bool is_known = old != before.end() && !is_before(contact, *old);
-        worst = std::max(worst, std::abs(depth(contact) - (is_known ? depth(*old) : 0)));
-        if (is_known)
-            ++old;
+    auto old = before.begin(), now = after.begin();
+    while (old != before.end() || now != after.end()) {
+        const auto key = old == before.end()  ? now->key()
+                         : now == after.end() ? old->key()
+                                              : std::min(old->key(), now->key());
+        const auto deepest = [&](auto& contact, const auto& end) {
+            double depth = 0;
+            for (; contact != end && contact->key() == key; ++contact)
+                depth = std::max(depth, contact->depth(contact->separation(x)) / contact->edge);
+            return depth;
+        };
+        const double depth_before = deepest(old, before.end());
+        worst = std::max(worst, std::abs(deepest(now, after.end()) - depth_before));
     }
-    for (; old != before.end(); ++old)
-        worst = std::max(worst, depth(*old));
     return worst;
+}
+
+void SurfaceContact::keep(const std::vector<Contact>& before) {
+    std::vector<Contact> kept;
+    auto now = contacts_.begin();
+    for (const Contact& old : before) {
+        while (now != contacts_.end() && now->key() < old.key())
+            ++now;
+        const bool is_same = now != contacts_.end() && now->key() == old.key()
+                             && now->normal.dot(old.normal) > same_plane;
+        if (!is_same)
+            kept.push_back(old);
+    }
+    contacts_.insert(contacts_.end(), kept.begin(), kept.end());
+    std::stable_sort(contacts_.begin(),
+                     contacts_.end(),
+                     [](const Contact& a, const Contact& b) { return a.key() < b.key(); });
 }
 
 double SurfaceContact::add_gradient(const Field& x, Field& gradient) const {

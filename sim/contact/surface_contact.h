@@ -64,7 +64,8 @@ class SurfaceContact : public ContactEnergy {
     void begin_step(const Start& start, const Field& x_expected, double dt);
 
     /// Linearises anew at x. Returns by how much depths differ from those of the old linearisation, at most, as a share
-    /// of the domain's edge.
+    /// of the domain's edge. In the bottom of a valley a vertex is nearest to one side, then, when that keeps it out, to the
+    /// other, and so on: from the second time on in a step, planes that it has met before hold as well.
     double relinearize(const Field& x);
 
     /// Whether relinearize(x) is known to return less than `tolerance`, where no corner is further than `way` [m] from where
@@ -105,6 +106,8 @@ class SurfaceContact : public ContactEnergy {
         Grip grip;                // of p - o
         // At the start of the step: along the normal, negative inside, and how deep that is.   [m]
         double start_gap = 0, start_depth = 0;
+
+        std::pair<int, int> key() const { return {pair, index}; }
     };
 
     struct Pair {
@@ -148,6 +151,8 @@ class SurfaceContact : public ContactEnergy {
     static double mismatch(const std::vector<Contact>& before,
                            const std::vector<Contact>& after,
                            const Field& x);
+    /// Adds those of a list whose planes are not among the contacts of their vertices.
+    void keep(const std::vector<Contact>& before);
     Contact prepared(const ContactPoint& point, int pair) const;
     double held_energy(int pair, int vertex) const;
 
@@ -156,7 +161,8 @@ class SurfaceContact : public ContactEnergy {
     NearDomainLists near_;
     std::vector<Pair> pairs_;
     std::vector<Extent> extents_;    // (#bodies) at the start of the step
-    std::vector<Contact> contacts_;  // by pair, then vertex
+    std::vector<Contact> contacts_;  // by pair, then vertex, planes found last first
+    int n_linearized_ = 0;           // in this step
     std::vector<Row> rows_;
     std::vector<HeldContact> held_;  // at the start of the step
     Field x_n_;

@@ -83,7 +83,8 @@ bool SurfaceContact::is_linear_enough(const Field& x, double way, double toleran
         const Pair& pair = pairs_[k];
         std::vector<int> vertices;
         for (; begin != before.end() && begin->pair == k; ++begin)
-            vertices.push_back(begin->index);
+            if (vertices.empty() || vertices.back() != begin->index)
+                vertices.push_back(begin->index);
         for (const ContactPoint& point : find_listed_contacts(bodies_[pair.of_vertices],
                                                               only(near(pair, x), vertices),
                                                               bodies_[pair.of_domains],

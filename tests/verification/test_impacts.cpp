@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
+
 namespace {
 
 constexpr double frame_time = 1.0 / 24;
@@ -65,28 +67,32 @@ TEST_CASE(
     "two cubes that meet keep their momentum, gain no energy, and stay out of each other") {
     struct Impact {
         double speed, shift, dt;
-        sim::Steps steps;
     };
 
-    // Aligned and shifted by 2.4 domains, slow and as fast as waves, by short and long steps, each way of stepping.
-    const Impact impact = GENERATE(Impact{2, 0, 1e-3, sim::Steps::Implicit},
-                                   Impact{2, 0.12, 4e-3, sim::Steps::Implicit},
-                                   Impact{10, 0, 4e-3, sim::Steps::Implicit},
-                                   Impact{10, 0.12, 1e-3, sim::Steps::Implicit},
-                                   Impact{10, 0.12, 4e-3, sim::Steps::Bdf2},
-                                   Impact{2, 0.12, 1e-3, sim::Steps::Bdf2},
-                                   Impact{2, 0, 1e-3, sim::Steps::Explicit},
-                                   Impact{10, 0.12, 1e-3, sim::Steps::Explicit});
-    CAPTURE(impact.speed, impact.shift, impact.dt, int(impact.steps));
+    // Aligned and shifted by 2.4 domains, slow and as fast as waves, by short and long steps, each way of stepping; every
+    // step is looked at.
+    const Impact impact = GENERATE(Impact{2, 0, 1e-3},
+                                   Impact{2, 0.12, 4e-3},
+                                   Impact{10, 0, 4e-3},
+                                   Impact{10, 0.12, 0.5e-3},
+                                   Impact{10, 0.12, 1e-3},
+                                   Impact{10, 0.12, 4e-3});
     sim::Scene scene = two_cubes(impact.speed, impact.shift);
-    scene.solver.steps = impact.steps;
+    scene.solver.method = GENERATE(sim::Method::Fem, sim::Method::Domains);
+    scene.solver.steps = GENERATE(sim::Steps::Implicit, sim::Steps::Bdf2, sim::Steps::Explicit);
     scene.solver.dt = impact.dt;
-    const Course course = run(scene, impact.speed, 0.2 / impact.speed + 0.06, 20);
+    CAPTURE(impact.speed, impact.shift, impact.dt);
+    CAPTURE(int(scene.solver.method), int(scene.solver.steps));
+    const double duration = 0.2 / impact.speed + 0.06;
+    const Course course =
+        run(scene, impact.speed, duration, static_cast<int>(std::lround(duration / impact.dt)));
     CHECK(course.momentum_error < 1e-12);
-    CHECK(course.angular_error < 0.01);  // depths are linear in the corners for a step
+    // Depths are linear in the corners for a step. A grid keeps the angular momentum of rigid motion alone.
+    if (scene.solver.method == sim::Method::Fem)
+        CHECK(course.angular_error < 0.01);
     CHECK(course.highest < 1 + 1e-6);
     // What velocity Verlet keeps is not the energy itself, but one that differs where modes swing fast.
-    if (impact.steps != sim::Steps::Explicit)
+    if (scene.solver.steps != sim::Steps::Explicit)
         CHECK(course.worst_rise < 1e-6);
     CHECK(course.deepest < 0.02);
     CHECK(course.lowest < 0.99);  // they have met
