@@ -69,7 +69,8 @@ bool Stepper::try_equilibrium(State& state,
         surfaces_.see(start);
         surfaces_.begin_step(start, state.x, 0);
     }
-    const bool solved = minimize_with_contact(options, contact_passes);
+    const bool solved = minimize_with_contact(
+        options, [&](int pass) { return are_surfaces_settled(pass, contact_passes); });
     summary = summary_;
     if (!solved)
         return false;

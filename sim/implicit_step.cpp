@@ -10,7 +10,8 @@ namespace {
 constexpr double dynamic_tolerance = 1e-3;  // of the inner forces of the step
 constexpr double semi_implicit_forcing = 1e-6;
 constexpr double short_step = 10;  // w dt, whose square times dynamic_tolerance is 0.1
-constexpr int contact_passes = 6;
+constexpr int contact_passes = 6;  // of surfaces
+constexpr int grid_passes = 20;
 constexpr double depth_tolerance = 2e-3;  // of a linearised depth, in domain edges
 
 }  // namespace
@@ -24,25 +25,23 @@ bool Stepper::try_implicit(State& state, double dt) {
 
 bool Stepper::try_bdf2(State& state, double dt) {
     // BDF2 takes the motion before as smooth. Where something begins or ceases to touch it is not: the velocity jumps, and
-    // to continue the jump would create energy. Such a step is one of backward Euler, as is the one after it.
+    // to continue the jump would create energy. Such a step is one of backward Euler, as is the one after it; and every one in
+    // which bodies meet on the grid.
     const bool is_smooth = state.last_dt == 0 || !state.x_before.empty();
     bool solved = solve_step(state, dt, is_smooth ? Scheme::Bdf2 : Scheme::BackwardEuler);
-    const bool has_event = solved
-                           && (colliders_.has_changed_touch(potential_.positions())
-                               || surfaces_.has_changed_touch(potential_.positions()));
+    const bool has_event =
+        solved
+        && (colliders_.has_changed_touch(potential_.positions())
+            || surfaces_.has_changed_touch(potential_.positions()) || !grid_hold_.empty());
     if (has_event && is_smooth)
         solved = solve_step(state, dt, Scheme::BackwardEuler);
     if (!solved)
         return false;
 
     Field x_before = state.x, v_before = state.v;
-    const Field moved = moved_;
     end_implicit(state, dt);
     if (has_event)
         x_before.clear();
-    // An impulse of contact on the grid is no acceleration to continue either: it shifts the velocity before as well.
-    for (std::size_t c = 0; c < moved.size(); ++c)
-        v_before[c] += moved_[c] - moved[c];
     state.x_before = std::move(x_before);
     state.v_before = std::move(v_before);
     return true;
@@ -50,6 +49,7 @@ bool Stepper::try_bdf2(State& state, double dt) {
 
 bool Stepper::solve_step(const State& state, double dt, Scheme scheme) {
     begin_step(state, dt, scheme);
+    begin_contact(state.x);
     guess(state, dt);
 
     NewtonOptions options;
@@ -63,8 +63,14 @@ bool Stepper::solve_step(const State& state, double dt, Scheme scheme) {
         map_.move(potential_.step().x_n, dt_hat_, q_, x_end_);
         surfaces_.begin_step({state.x, state.v, state.top_speed, state.contacts}, x_end_, dt);
     }
-    if (!minimize_with_contact(options,
-                               scene_.solver.steps == Steps::SemiImplicit ? 1 : contact_passes))
+    const auto is_settled = [&](int pass) {
+        if (is_contact_settled(state.x, pass))
+            return true;
+        if (scene_.solver.steps == Steps::SemiImplicit)
+            start_from_rest();
+        return false;
+    };
+    if (!minimize_with_contact(options, is_settled))
         return false;
     moved_.resize(state.x.size());
     map_.apply(q_, moved_);
@@ -73,8 +79,8 @@ bool Stepper::solve_step(const State& state, double dt, Scheme scheme) {
     return true;
 }
 
-bool Stepper::minimize_with_contact(const NewtonOptions& options, int most_passes) {
-    // Surfaces are linearised where the step is expected to end: again, where it ends elsewhere.
+bool Stepper::minimize_with_contact(const NewtonOptions& options,
+                                    const std::function<bool(int)>& is_settled) {
     for (int pass = 1;; ++pass) {
         summary_ = minimize(potential_, options, q_, scratch_);
         newton_iterations += summary_.iterations;
@@ -84,10 +90,44 @@ bool Stepper::minimize_with_contact(const NewtonOptions& options, int most_passe
             continue;
         if (summary_.termination != Termination::Converged)
             return false;
-        if (pass >= most_passes || surfaces_.empty()
-            || surfaces_.relinearize(potential_.positions()) < depth_tolerance)
+        if (is_settled(pass))
             return true;
     }
+}
+
+bool Stepper::are_surfaces_settled(int pass, int most_passes) {
+    // Surfaces are linearised where the step is expected to end: again, where it ends elsewhere.
+    return pass >= most_passes || surfaces_.empty()
+           || surfaces_.relinearize(potential_.positions()) < depth_tolerance;
+}
+
+bool Stepper::is_contact_settled(const Field& x_n, int pass) {
+    const int most_passes = scene_.solver.steps == Steps::SemiImplicit ? 1 : contact_passes;
+    const bool fit = are_surfaces_settled(pass, most_passes);
+    return (grid_contact_->is_empty() || pass >= grid_passes || is_grid_settled(x_n)) && fit;
+}
+
+bool Stepper::is_grid_settled(const Field& x_n) {
+    q_moved_ = q_;
+    moved_.resize(x_n.size());
+    map_.apply(q_moved_, moved_);
+    restrain_on_grid(x_n, dt_hat_);
+    std::vector<GridHold::Contact> met;
+    for (const GridContact::Meeting& meeting : grid_contact_->meetings()) {
+        const GridHold::Place place{meeting.pair, meeting.node};
+        if (grid_hold_.has(place))
+            continue;
+        const Impulses::Settled impulse = (*impulses_)[meeting.impulse];
+        met.push_back({place,
+                       meeting.touch.normal,
+                       meeting.touch.edge,
+                       meeting.touch.friction,
+                       grid_contact_->shares_of(meeting),
+                       impulses_->mass(meeting.impulse),
+                       impulse.push / dt_hat_,
+                       impulse.hold / dt_hat_});
+    }
+    return grid_hold_.update(potential_.positions(), std::move(met));
 }
 
 bool Stepper::start_from_rest() {
@@ -105,14 +145,13 @@ bool Stepper::start_from_rest() {
 void Stepper::end_implicit(State& state, double dt) {
     set_reactions();
     state.contacts = surfaces_.held(potential_.positions());
-    // What inner forces gave, before contact on the grid changes what moves the corners.
+    // What inner forces gave, before what is left of contact on the grid changes what moves the corners.
     const auto& step = potential_.step();
     set_node_reactions([&](int, int i) {
         return (step.mass[i] * (q_[i] - step.q_tilde[i]) + potential_.inner_part()[i])
                / dt_hat_;
     });
     keep_inner_force(state);
-    begin_contact(state.x);
     restrain_on_grid(state.x, dt_hat_);
     drift(potential_.step().x_n, dt_hat_);
     end_on_targets();

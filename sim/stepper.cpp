@@ -52,7 +52,7 @@ Stepper::Stepper(const Scene& scene, Assembly& assembly)
       surfaces_(scene.contact.mode == Contact::Mode::Surface ? contact_surfaces(scene, assembly)
                                                              : std::vector<ContactSurface>{},
                 friction_),
-      potential_(map_, elastic_bodies(assembly), {&colliders_, &surfaces_}, make_points()) {
+      potential_(map_, elastic_bodies(assembly), {&colliders_, &surfaces_, &grid_hold_}, make_points()) {
     if (scene.contact.mode == Contact::Mode::Grid)
         measured_.emplace(contact_surfaces(scene, assembly), friction_);
     for (const AssembledBody& body : assembly.bodies)
@@ -70,6 +70,7 @@ void Stepper::begin_step(const State& state, double dt, Scheme scheme) {
     for (const PrescribedDof& held : held_)
         q_[held.dof] = held.velocity;
     begin_forces(state, dt);
+    grid_hold_.begin_step(potential_.step().x_n, dt_hat_);
 }
 
 void Stepper::begin_forces(const State& state, double dt) {

@@ -3,6 +3,7 @@
 
 #include "sim/assembly.h"
 #include "sim/contact/grid_contact.h"
+#include "sim/contact/grid_hold.h"
 #include "sim/contact/surface_contact.h"
 #include "sim/incremental_potential.h"
 #include "sim/pinned_nodes.h"
@@ -121,7 +122,12 @@ class Stepper {
     bool try_implicit(State& state, double dt);
     bool try_bdf2(State& state, double dt);
     bool solve_step(const State& state, double dt, Scheme scheme);
-    bool minimize_with_contact(const NewtonOptions& options, int most_passes);
+    // Solves again until is_settled(pass), from 1.
+    bool minimize_with_contact(const NewtonOptions& options,
+                               const std::function<bool(int)>& is_settled);
+    bool are_surfaces_settled(int pass, int most_passes);
+    bool is_contact_settled(const Field& x_n, int pass);
+    bool is_grid_settled(const Field& x_n);
     void end_implicit(State& state, double dt);
     void keep_inner_force(State& state);
     void guess(const State& state, double dt);
@@ -169,6 +175,7 @@ class Stepper {
     PairFriction friction_;
     SurfaceContact surfaces_;                           // empty where contact is on the grid
     std::optional<SurfaceContact> measured_;            // there, to measure penetration only
+    GridHold grid_hold_;                                // of this step, implicit
     std::vector<std::unique_ptr<PointEnergy>> points_;  // (#bodies)
     bool has_points_ = false;
     IncrementalPotential potential_;

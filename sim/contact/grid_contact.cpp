@@ -112,10 +112,14 @@ class GridContact::Pair {
             node.is_pushed = false;
     }
 
-    /// Adds an impulse wherever the bodies would meet that has none yet; returns whether they do anywhere.
-    bool add_impulses(const Field& x, double dt, const Field& v, Impulses& impulses) {
+    /// Adds an impulse wherever the bodies, the pair's number `pair`, would meet that has none yet.
+    void add_impulses(int pair,
+                      const Field& x,
+                      double dt,
+                      const Field& v,
+                      Impulses& impulses,
+                      std::vector<Meeting>& meetings) {
         see(x, dt, v);
-        bool have_met = false;
         for (std::size_t n = 0; n < nodes_.size(); ++n) {
             Node& node = nodes_[n];
             const auto& [a, b] = node.side;
@@ -126,10 +130,27 @@ class GridContact::Pair {
                 continue;
             if (rows_[n].last == rows_[n].first)
                 rows_[n] = impulses.row_of(shares_of(static_cast<int>(n)));
-            impulses.add({normal, 0, cell_size_, friction_}, rows_[n]);
-            node.is_pushed = have_met = true;
+            const Impulses::Touch touch{normal, 0, cell_size_, friction_};
+            const int impulse = impulses.add(touch, rows_[n]);
+            if (impulse >= 0)
+                meetings.push_back({pair, static_cast<int>(n), impulse, touch});
+            node.is_pushed = true;
         }
-        return have_met;
+    }
+
+    std::vector<Impulses::Share> shares_of(int n) {
+        std::vector<Impulses::Share> result;
+        for (int s = 0; s < 2; ++s) {
+            if (at_node_[s].empty())
+                sort_shares(s);
+            const double outward = s == 0 ? -1 : 1;
+            for (int k = first_at_node_[s][n]; k < first_at_node_[s][n + 1]; ++k) {
+                const auto& [c, node, weight] = shares_[s][at_node_[s][k]];
+                result.push_back(
+                    {c, outward * weight * fields_.mass[c][0] / nodes_[n].side[s].mass});
+            }
+        }
+        return result;
     }
 
   private:
@@ -212,22 +233,6 @@ class GridContact::Pair {
             for (int k = 0; k < 3; ++k)
                 node.normals[k][n] = normal[k];
         }
-    }
-
-    /// What p - o, the second body from the first, is at a node: the mean velocities of their corners.
-    std::vector<Impulses::Share> shares_of(int n) {
-        std::vector<Impulses::Share> result;
-        for (int s = 0; s < 2; ++s) {
-            if (at_node_[s].empty())
-                sort_shares(s);
-            const double outward = s == 0 ? -1 : 1;
-            for (int k = first_at_node_[s][n]; k < first_at_node_[s][n + 1]; ++k) {
-                const auto& [c, node, weight] = shares_[s][at_node_[s][k]];
-                result.push_back(
-                    {c, outward * weight * fields_.mass[c][0] / nodes_[n].side[s].mass});
-            }
-        }
-        return result;
     }
 
     void sort_shares(int s) {
@@ -318,17 +323,20 @@ bool GridContact::restrain(Impulses& impulses, const Field& x, double dt, Field&
     impulses.begin_drift(dt);
     for (Pair& pair : pairs_)
         pair.begin_drift();
-    bool have_met = false;
+    meetings_.clear();
     for (int round = 0; round < most_rounds; ++round) {
-        bool meet = false;
-        for (Pair& pair : pairs_)
-            meet |= pair.add_impulses(x, dt, v, impulses);
-        if (!meet)
+        const std::size_t before = meetings_.size();
+        for (std::size_t k = 0; k < pairs_.size(); ++k)
+            pairs_[k].add_impulses(static_cast<int>(k), x, dt, v, impulses, meetings_);
+        if (meetings_.size() == before)
             break;
-        have_met = true;
         impulses.settle(q, v);
     }
-    return have_met;
+    return !meetings_.empty();
+}
+
+std::vector<Impulses::Share> GridContact::shares_of(const Meeting& meeting) {
+    return pairs_[meeting.pair].shares_of(meeting.node);
 }
 
 }  // namespace sim

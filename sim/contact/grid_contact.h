@@ -1,4 +1,4 @@
-// Contact between bodies on a background grid: impulses after the solve.
+// Contact between bodies on a background grid: impulses on velocities.
 #pragma once
 
 #include "sim/base/field.h"
@@ -44,7 +44,9 @@ struct ContactFields {
 /// 0.5 within 1% of Coulomb's law, 3% where they are slaved; nearer than 1.5 cells to an edge of the lower one it also
 /// drifts, and misses by 6%. It rests within 0.01 domain edges, slaved 0.05. Corners alone are seen: two cubes that meet
 /// with a face on a face get 0.02 edges into each other at a fifth of the speed of waves, 0.2 at that speed; a rim between
-/// two rows of the other's corners 0.25 to 0.4, and 1.3 to 1.7. Contact between surfaces keeps to 0.02.
+/// two rows of the other's corners 0.25 to 0.4, and up to 2. Contact between surfaces keeps to 0.02.
+///
+/// In implicit steps these impulses only tell where contact is, and what is left of it: see GridHold.
 ///
 /// Holds for one step, of several drifts where the map T serves for as many: map and `corners` must stay as they are as long
 /// as it lives.
@@ -61,10 +63,23 @@ class GridContact {
     /// drift of dt [m/s]; returns whether bodies meet. `impulses` are the same as long as it lives.
     bool restrain(Impulses& impulses, const Field& x, double dt, Field& q, Field& v);
 
+    /// Where bodies have met in the last restrain().
+    struct Meeting {
+        int pair = 0, node = 0;
+        int impulse = 0;  // its number
+        Impulses::Touch touch;
+    };
+
+    const std::vector<Meeting>& meetings() const { return meetings_; }
+
+    /// What the second body from the first, p - o, is there: the mean velocities of their corners.
+    std::vector<Impulses::Share> shares_of(const Meeting& meeting);
+
   private:
     class Pair;
     ContactFields fields_;
     std::vector<Pair> pairs_;
+    std::vector<Meeting> meetings_;
 };
 
 }  // namespace sim

@@ -58,13 +58,15 @@ Impulses::Row Impulses::row_of(std::span<const Share> shares) {
     return row;
 }
 
-void Impulses::add(const Touch& touch, const Row& row) {
+int Impulses::add(const Touch& touch, const Row& row) {
     Impulse impulse{touch, row};
     const Vec3 inverse = unpadded(row.inverse_mass);
     impulse.inverse_along = touch.normal.cwiseAbs2().dot(inverse);
     impulse.inverse_across = inverse.maxCoeff();
-    if (impulse.inverse_along > 0)  // else held on all sides
-        impulses_.push_back(impulse);
+    if (!(impulse.inverse_along > 0))
+        return -1;
+    impulses_.push_back(impulse);
+    return static_cast<int>(impulses_.size()) - 1;
 }
 
 double Impulses::settle(Field& q, Field& v) {

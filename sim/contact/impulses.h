@@ -53,7 +53,21 @@ class Impulses {
     Row row_of(int corner);
     Row row_of(std::span<const Share> shares);
 
-    void add(const Touch& touch, const Row& row);
+    /// Returns the number of the impulse; -1 where p - o is held on all sides.
+    int add(const Touch& touch, const Row& row);
+
+    /// What one has come to: along the normal, and across it, on p - o.   [N s]
+    struct Settled {
+        double push = 0;
+        Vec3 hold{0, 0, 0};
+    };
+
+    Settled operator[](int number) const {
+        return {impulses_[number].push, impulses_[number].hold};
+    }
+
+    /// The mass that one pushes along its normal.   [kg]
+    double mass(int number) const { return 1 / impulses_[number].inverse_along; }
 
     /// Settles all, also those of earlier calls, until none changes a depth by more than 1e-4 domain edges; v = T q goes
     /// along. Returns by how much any v changes, at most.   q (#dofs), v (#C) [m/s]

@@ -192,7 +192,7 @@ TEST_CASE("flower [Z18 fig 11]: leaves bend most, the stem least, on any grid") 
     };
     const Load load(shot("1").scene);
     std::vector<Course> courses;
-    for (const char* grid_ratio : {"1", "4"})
+    for (const char* grid_ratio : {"1", "2", "4"})
         courses.push_back(
             course_of(shot(grid_ratio), load, last_frame, {"stem", "petal", "leaf"}, "tip"));
     for (Course& course : courses) {

@@ -14,15 +14,15 @@ constexpr double frame_time = 1.0 / 24;
 constexpr double edge = 0.05, dt = 1e-3;
 
 /// Two cubes of 0.3 m, six domains an edge, that meet along x at `speed`, one `shift` aside in y and z.
-sim::Scene two_cubes(double speed, double shift) {
+sim::Scene two_cubes(double speed, double shift, double E = 1e5) {
     constexpr double side = 6 * edge;
     sim::Scene scene;
     scene.solver.method = sim::Method::Fem;
     scene.solver.dt = dt;
     scene.contact.mode = sim::Contact::Mode::Grid;
     scene.bodies = {
-        tests::soft_block("left", {-side - 0.01, 0, 0}, Vec3::Constant(side), edge, 1e5),
-        tests::soft_block("right", {0.01, shift, shift}, Vec3::Constant(side), edge, 1e5)};
+        tests::soft_block("left", {-side - 0.01, 0, 0}, Vec3::Constant(side), edge, E),
+        tests::soft_block("right", {0.01, shift, shift}, Vec3::Constant(side), edge, E)};
     scene.bodies[0].velocity = {speed / 2, 0, 0};
     scene.bodies[1].velocity = {-speed / 2, 0, 0};
     scene.probes = {{"left", "left", std::string("all")},
@@ -94,4 +94,27 @@ TEST_CASE("cubes that meet on the grid get no deeper than its distance check can
     const auto probes = simulation.probes();
     const Vec3 apart = (probes[1].position - probes[0].position).cwiseAbs();
     CHECK(apart.maxCoeff() > 5 * edge);  // they bounce, or go past each other, but not through
+}
+
+TEST_CASE("cubes that meet on the grid by steps long against their waves gain no energy") {
+    // A wave passes a domain of 5 MPa in 0.7 ms. What knew of contact after the solve alone, had sixteen times the energy.
+    const sim::Steps steps =
+        GENERATE(sim::Steps::Implicit, sim::Steps::SemiImplicit, sim::Steps::Bdf2);
+    const sim::Method method = GENERATE(sim::Method::Fem, sim::Method::Domains);
+    const double step = GENERATE(1e-3, 4e-3), shift = GENERATE(0.0, 0.137);
+    CAPTURE(int(steps), int(method), step, shift);
+    sim::Scene scene = two_cubes(2, shift, 5e6);
+    scene.solver.steps = steps;
+    scene.solver.method = method;
+    scene.solver.dt = step;
+    sim::Simulation simulation(scene, frame_time);
+    const sim::Stats start = simulation.stats();
+    double highest = 0;
+    for (int k = 1; k <= 40; ++k) {
+        simulation.advance_to(0.1 * k / 40);
+        highest = std::max(highest, tests::energy(simulation.stats()));
+    }
+    const sim::Stats end = simulation.stats();
+    CHECK(highest < tests::energy(start) * (1 + 1e-6));
+    CHECK((end.linear_momentum - start.linear_momentum).norm() < 1e-12 * start.total_mass / 2);
 }
