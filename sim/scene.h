@@ -143,7 +143,7 @@ struct PlaneShape {
     Vec3 point{0, 0, 0}, normal{0, 0, 1};  // solid on the side opposite to the normal
 };
 
-/// Where a collider is at a time, turned about its centre: R = Rz Ry Rx of the angles.
+/// Where a collider is at a time, turned about its pivot: R = Rz Ry Rx of the angles.
 struct ColliderKey {
     double time = 0;          // [s]
     Vec3 translate{0, 0, 0};  // [m]
@@ -154,6 +154,7 @@ struct Collider {
     std::variant<PlaneShape, assets::Shape, assets::MeshFile> shape;  // a mesh is closed
     Friction friction;
     std::vector<ColliderKey> keys = {};  // by ascending time; none: it stands still
+    std::optional<Vec3> pivot = {};      // that keys turn it about [m]; none: its centre
 
     /// Planes, and spheres and boxes that stand still, are drawn from the shot file; others from the frame cache.
     bool is_drawn_from_cache() const {

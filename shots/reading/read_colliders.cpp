@@ -1,5 +1,8 @@
 // What bodies touch: colliders and each other.
+#include "shots/reading/motion_file.h"
 #include "shots/reading/readers.h"
+
+#include <fmt/format.h>
 
 namespace shots {
 namespace {
@@ -37,7 +40,34 @@ std::vector<sim::ColliderKey> read_keys(TableReader& collider) {
     return keys;
 }
 
-sim::Collider read_collider(TableReader& table) {
+/// The keys of a baked motion; what is wrong in its file is told at the word that names it.
+std::vector<sim::ColliderKey> read_follow(TableReader& collider, int first_frame, double fps) {
+    constexpr std::size_t most_shown = 10;
+    const std::filesystem::path file = collider.file("follow");
+    if (!collider.good("follow"))
+        return {};
+    std::vector<std::string> mistakes;
+    std::vector<sim::ColliderKey> keys = read_motion(file, first_frame, fps, mistakes);
+    for (std::size_t k = 0; k < std::min(mistakes.size(), most_shown); ++k)
+        collider.error("follow", fmt::format("{}:{}", file.string(), mistakes[k]));
+    if (mistakes.size() > most_shown)
+        collider.error(
+            "follow",
+            fmt::format("{}: {} more mistakes", file.string(), mistakes.size() - most_shown));
+    return keys;
+}
+
+void read_motion_of(TableReader& table, int first_frame, double fps, sim::Collider& collider) {
+    collider.keys = read_keys(table);
+    if (!table.has("follow"))
+        return;
+    if (!collider.keys.empty())
+        table.error("follow", "'keys' and 'follow' exclude each other: keep one");
+    collider.keys = read_follow(table, first_frame, fps);
+    collider.pivot = Vec3::Zero();
+}
+
+sim::Collider read_collider(TableReader& table, int first_frame, double fps) {
     sim::Collider collider;
     std::vector<std::string> words = shape_words();
     words.insert(words.end(), {"plane", "mesh"});
@@ -50,19 +80,20 @@ sim::Collider read_collider(TableReader& table) {
         collider.shape = read_shape(table, word);
     }
     collider.friction = read_friction(table);
-    collider.keys = read_keys(table);
+    read_motion_of(table, first_frame, fps, collider);
     if (word == "plane" && !collider.keys.empty())
-        table.error("keys", "a plane stands still: use a box where a wall moves");
+        table.error(table.has("keys") ? "keys" : "follow",
+                    "a plane stands still: use a box where a wall moves");
     table.finish();
     return collider;
 }
 
 }  // namespace
 
-std::vector<sim::Collider> read_colliders(TableReader& root) {
+std::vector<sim::Collider> read_colliders(TableReader& root, int first_frame, double fps) {
     std::vector<sim::Collider> colliders;
     for (TableReader& table : root.tables("collider"))
-        colliders.push_back(read_collider(table));
+        colliders.push_back(read_collider(table, first_frame, fps));
     return colliders;
 }
 

@@ -92,8 +92,8 @@ std::vector<sim::Force> read_forces(TableReader& root, const std::vector<sim::Bo
 /// All [[probe]].
 std::vector<sim::Probe> read_probes(TableReader& root, const std::vector<sim::Body>& bodies);
 
-/// All [[collider]].
-std::vector<sim::Collider> read_colliders(TableReader& root);
+/// All [[collider]]. A motion that one follows has `first_frame` at time 0.
+std::vector<sim::Collider> read_colliders(TableReader& root, int first_frame, double fps);
 
 /// [contact]
 sim::Contact read_contact(TableReader table, const std::vector<sim::Body>& bodies);

@@ -98,13 +98,12 @@ MovingCollider::MovingCollider(const Collider& collider, double resolution, doub
     : keys_(collider.keys), friction_(collider.friction) {
     if (const auto* plane = std::get_if<PlaneShape>(&collider.shape)) {
         shape_ = *plane;
-        centre_ = plane->point;
         thickness_ = infinity;
         return;
     }
     const double voxel = resolution / 4;
     const auto solid = assets::make_solid(collider_source(collider), voxel, 16 * voxel + reach);
-    centre_ = (solid->min + solid->max) / 2;
+    pivot_ = collider.pivot.value_or((solid->min + solid->max) / 2);
     thickness_ = (solid->max - solid->min).minCoeff();
     bool has_formula = false;
     if (const auto* shape = std::get_if<assets::Shape>(&collider.shape))
@@ -122,7 +121,7 @@ MovingCollider::MovingCollider(const Collider& collider, double resolution, doub
 
 Pose MovingCollider::pose(double time) const {
     Pose pose;
-    pose.centre = centre_;
+    pose.pivot = pivot_;
     if (keys_.empty())
         return pose;
     const auto after = std::find_if(

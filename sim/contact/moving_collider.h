@@ -8,15 +8,15 @@
 
 namespace sim {
 
-/// x = centre + R (X - centre) + translate: where a point X of the shape, as the shot file places it, is at a time.
+/// x = pivot + R (X - pivot) + translate: where a point X of the shape, as the shot file places it, is at a time.
 struct Pose {
     Mat3 R = Mat3::Identity();
-    Vec3 centre{0, 0, 0}, translate{0, 0, 0};
+    Vec3 pivot{0, 0, 0}, translate{0, 0, 0};
 
-    Vec3 carry(const Vec3& X) const { return centre + R * (X - centre) + translate; }
+    Vec3 carry(const Vec3& X) const { return pivot + R * (X - pivot) + translate; }
 
     Vec3 bring_back(const Vec3& x) const {
-        return centre + R.transpose() * (x - centre - translate);
+        return pivot + R.transpose() * (x - pivot - translate);
     }
 };
 
@@ -30,7 +30,7 @@ class MovingCollider {
     /// Error(Input) where a mesh is not closed.
     MovingCollider(const Collider& collider, double resolution, double reach = 0);
 
-    /// Between keys translation and the angles, about the shape's centre, are linear, so that a shape may turn by more than
+    /// Between keys translation and the angles, about the pivot, are linear, so that a shape may turn by more than
     /// half a turn from one to the next; before the first key and after the last it stands still.
     Pose pose(double time) const;
 
@@ -59,7 +59,7 @@ class MovingCollider {
         shape_;
     std::vector<ColliderKey> keys_;
     Friction friction_;
-    Vec3 centre_{0, 0, 0};
+    Vec3 pivot_{0, 0, 0};
     double thickness_ = 0;
 };
 

@@ -7,29 +7,21 @@
 #include <sstream>
 
 namespace shots {
-namespace {
 
-/// A fresh folder that goes away with the test.
-struct Folder {
-    std::filesystem::path path;
-
-    Folder() {
-        std::string name =
-            (std::filesystem::temp_directory_path() / "supple_shot_XXXXXX").string();
-        REQUIRE(mkdtemp(name.data()) != nullptr);
-        path = name;
-    }
-
-    ~Folder() { std::filesystem::remove_all(path); }
-};
-
-std::filesystem::path write(const Folder& folder, const std::string& text) {
-    const auto file = folder.path / "test.toml";
-    std::ofstream(file) << text;
-    return file;
+Folder::Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "supple_shot_XXXXXX").string();
+    REQUIRE(mkdtemp(name.data()) != nullptr);
+    path = name;
 }
 
-}  // namespace
+Folder::~Folder() {
+    std::filesystem::remove_all(path);
+}
+
+std::filesystem::path Folder::write(const std::string& name, const std::string& text) const {
+    std::ofstream(path / name) << text;
+    return path / name;
+}
 
 const std::string& sound_shot() {
     static const std::string text = R"(format = 1
@@ -88,13 +80,13 @@ std::string with(const std::string& text,
 
 Shot load_text(const std::string& text, const std::vector<std::string>& overrides) {
     const Folder folder;
-    return load_shot(write(folder, text), overrides);
+    return load_shot(folder.write("test.toml", text), overrides);
 }
 
 std::vector<std::string> mistakes_of(const std::string& text,
                                      const std::vector<std::string>& overrides) {
     const Folder folder;
-    const auto file = write(folder, text);
+    const auto file = folder.write("test.toml", text);
     std::vector<std::string> lines;
     try {
         load_shot(file, overrides);

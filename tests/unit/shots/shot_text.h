@@ -9,6 +9,19 @@
 
 namespace shots {
 
+/// A fresh folder that goes away with the test.
+struct Folder {
+    std::filesystem::path path;
+
+    Folder();
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    ~Folder();
+
+    /// Returns the file's path.
+    std::filesystem::path write(const std::string& name, const std::string& text) const;
+};
+
 /// A small sound shot; each test changes a piece of it. Line numbers in tests count from its first line.
 const std::string& sound_shot();
 

@@ -63,6 +63,16 @@ TEST_CASE(
     CHECK((moving.pose(2).bring_back(moving.pose(2).carry(corner)) - corner).norm() < 1e-14);
 }
 
+TEST_CASE("a shape with a pivot turns about it, wherever it lies itself") {
+    Collider collider{assets::Shape{assets::Box{{0, 0, 0}, {2, 2, 4}}}, {}};
+    collider.keys = {{0, {0, 0, 0}, {0, 0, 0}}, {1, {0, 4, 0}, {0, 0, quarter_turn}}};
+    collider.pivot = Vec3(1, 0, 0);
+    const MovingCollider moving(collider, 0.1);
+    const Vec3 corner(2, 2, 4);
+    CHECK((moving.pose(1).carry(corner) - Vec3(-1, 5, 4)).norm() < 1e-14);
+    CHECK((moving.pose(1).bring_back({-1, 5, 4}) - corner).norm() < 1e-14);
+}
+
 TEST_CASE("ellipsoids and combined shapes are sampled, fine enough for their curvature") {
     constexpr double resolution = 0.1, voxel = resolution / 4, least_radius = 0.36 / 1.2;
     const assets::Shape egg = assets::Ellipsoid{{0, 0, 0}, {1.2, 0.6, 0.8}};
