@@ -70,7 +70,9 @@ ColliderContact::Start ColliderContact::start_of(int k, int j) const {
     const Vec3 X = start_poses_[j].bring_back(near_.start(k));
     const MovingCollider::Distance distance = colliders_[j].distance(X);
     const Pose& end = poses_[j];
-    return {end.R * distance.normal, end.carry(X), distance.gap + corners_[k].outside};
+    // Unit also where a gradient of means over both sides of a wall is short.
+    return {
+        end.R * distance.normal.normalized(), end.carry(X), distance.gap + corners_[k].outside};
 }
 
 double ColliderContact::depth_in_step(
@@ -82,7 +84,8 @@ double ColliderContact::depth_in_step(
         return 0;
     }
     const double depth = depth_of(corners_[k], colliders_[j], poses_[j], x, normal);
-    if (normal.dot(start.normal) >= 0)
+    // Around the middle a gradient of means over both sides is short, and would let a corner slip to the other one.
+    if (normal.dot(start.normal) >= 0 && normal.squaredNorm() > 0.5)
         return depth;
     normal = start.normal;
     return std::max(0.0, -(start.gap + normal.dot(x - start.position)));

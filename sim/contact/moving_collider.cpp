@@ -1,5 +1,7 @@
 #include "sim/contact/moving_collider.h"
 
+#include "sim/contact/collider_field.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -101,8 +103,8 @@ MovingCollider::MovingCollider(const Collider& collider, double resolution, doub
         thickness_ = infinity;
         return;
     }
-    const double voxel = resolution / 4;
-    const auto solid = assets::make_solid(collider_source(collider), voxel, 16 * voxel + reach);
+    const assets::Source source = collider_source(collider);
+    const auto solid = assets::make_solid(source, resolution / 4, resolution);
     pivot_ = collider.pivot.value_or((solid->min + solid->max) / 2);
     thickness_ = (solid->max - solid->min).minCoeff();
     bool has_formula = false;
@@ -115,8 +117,12 @@ MovingCollider::MovingCollider(const Collider& collider, double resolution, doub
                 return is_formula;
             },
             *shape);
-    if (!has_formula)
-        shape_ = std::make_shared<const assets::DistanceField>(*solid, voxel, reach);
+    if (has_formula)
+        return;
+    const ColliderField field = collider_field(source, resolution, reach);
+    shape_ = field.distance;
+    if (field.voxel < resolution / 4)  // made finer for walls that are no thinner than that
+        thickness_ = std::min(thickness_, 1.5 * field.voxel);
 }
 
 Pose MovingCollider::pose(double time) const {

@@ -27,7 +27,7 @@ class MovingCollider {
   public:
     /// `resolution`: the scale at which details matter of what has no formula (a mesh, ellipsoids and combined shapes):
     /// the smallest domain's edge [m]. Up to a distance of `reach` [m] it is as exact outside as inside. Throws
-    /// Error(Input) where a mesh is not closed.
+    /// Error(Input) as collider_field() does.
     MovingCollider(const Collider& collider, double resolution, double reach = 0);
 
     /// Between keys translation and the angles, about the pivot, are linear, so that a shape may turn by more than
@@ -43,7 +43,8 @@ class MovingCollider {
     /// `reach`.
     Distance distance(const Vec3& X) const;
 
-    /// The smallest extent along the axes, what a fast corner might pass through; infinite for a plane.   [m]
+    /// The smallest extent along the axes, or less where walls are thinner: what a fast corner might pass through; infinite
+    /// for a plane.   [m]
     double thickness() const { return thickness_; }
 
     const Friction& friction() const { return friction_; }

@@ -4,6 +4,10 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
 using sim::Collider;
 using sim::ColliderKey;
 using sim::MovingCollider;
@@ -96,6 +100,36 @@ TEST_CASE("ellipsoids and combined shapes are sampled, fine enough for their cur
         CHECK(checked > 50);
     }
     CHECK(MovingCollider({two, {}}, resolution).thickness() == Approx(1.2));
+}
+
+TEST_CASE("a wall of a mesh has an inside, however coarse the domains") {
+    const auto path = std::filesystem::temp_directory_path()
+                      / ("supple_test_wall_" + std::to_string(getpid()) + ".obj");
+    const auto wall = [&](double side, double thickness) {
+        std::ofstream file(path);
+        for (int a = 0; a < 8; ++a)
+            file << "v " << (a & 1 ? side : 0) << " " << (a >> 1 & 1 ? side : 0) << " "
+                 << (a >> 2 & 1 ? thickness : 0) << "\n";
+        file << "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+        file.close();
+        return MovingCollider({assets::MeshFile{path}, {}}, 0.1);
+    };
+    const MovingCollider collider = wall(0.2, 0.004);
+    CHECK(collider.thickness() <= 0.004);
+    CHECK(collider.distance({0.1, 0.1, 0.002}).gap < -0.001);
+    for (const double side : {-1.0, 1.0}) {
+        const MovingCollider::Distance distance =
+            collider.distance({0.1, 0.1, 0.002 + side * 0.003});
+        CHECK(distance.gap == Approx(0.001).margin(1e-4));
+        CHECK(distance.normal.z() == Approx(side).margin(1e-3));
+    }
+    std::filesystem::remove(path);
+}
+
+TEST_CASE("a collider without a formula that would take too many voxels is refused") {
+    const Collider planet{assets::Shape{assets::Ellipsoid{{0, 0, 0}, {60, 50, 40}}}, {}};
+    CHECK_THROWS_WITH(MovingCollider(planet, 0.1), Catch::Matchers::Contains("voxels"));
+    CHECK_NOTHROW(MovingCollider(planet, 10));
 }
 
 TEST_CASE("the thickness is the smallest extent") {
