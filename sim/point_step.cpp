@@ -86,6 +86,22 @@ void Stepper::commit_affine(State& state, const Field& q) const {
                              });
 }
 
+double Stepper::affine_energy(const State& state) const {
+    double energy = 0;
+    for (std::size_t b = 0; b < ranges_.size() && !state.affine.empty(); ++b) {
+        const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
+        for (int s = slaves.begin; s < slaves.end; ++s) {
+            const int c = map_.slave_corner()[s];
+            const Vec3p D = map_.second_moment(static_cast<int>(b), s);
+            for (int j = 0; j < 3; ++j) {
+                const Vec3p& B = state.affine[c].column[j];
+                energy += assembly_.mass[c][0] / 2 * dot(B, B) / D[j];
+            }
+        }
+    }
+    return energy;
+}
+
 void Stepper::set_node_reactions(const std::function<Vec3p(int, int)>& force_on) {
     node_reactions_.clear();
     for (std::size_t k = 0; k < pinned_nodes_.size(); ++k) {

@@ -105,6 +105,7 @@ Stats stats_of(Assembly& assembly, const Stepper& stepper, const State& state) {
         for (int j = 0; j < 3; ++j)
             stats.angular_momentum +=
                 assembly.mass[c][0] * Vec3::Unit(j).cross(unpadded(state.affine[c].column[j]));
+    stats.kinetic_energy += stepper.affine_energy(state);
     for (const HeldContact& contact : state.contacts)
         stats.elastic_energy += contact.energy;
     stats.collider_penetration =

@@ -50,6 +50,9 @@ class Stepper {
     /// Mass on the degrees of freedom of the last step [kg], and the forces of the pins on corners (#C) [N].
     double mass_on_dofs() const;
 
+    /// Of what APIC remembers of how the velocity changes around corners, Σ_c m/2 tr(B D⁻¹ Bᵀ), where the last step has led.   [J]
+    double affine_energy(const State& state) const;
+
     const Field& reaction() const { return reaction_; }
 
     const ColliderContact& colliders() const { return colliders_; }

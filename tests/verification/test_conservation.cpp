@@ -59,6 +59,7 @@ sim::Scene disc(sim::Method method,
     scene.solver.method = method;
     scene.solver.steps = steps;
     scene.solver.dt = 1e-3;
+    scene.solver.enrich.thin = false;  // else all of a disc one domain thick is free
     scene.bodies.push_back(body);
     return scene;
 }
@@ -83,7 +84,7 @@ TEST_CASE("free flight keeps mass and momentum, and creates no elastic energy",
             const sim::Stats now = simulation.stats();
             CHECK(std::abs(now.total_mass / start.total_mass - 1) < 1e-12);
             CHECK((now.linear_momentum - start.linear_momentum).norm()
-                  < 1e-9 * start.linear_momentum.norm());
+                  < 1e-12 * start.linear_momentum.norm());
             // Nothing but the rounding of the laws at rest, some 1e-16 E V (E = 1e6 Pa, V = 0.0785 m³).
             CHECK(std::abs(now.elastic_energy) < 1e-14 * 1e6 * 0.0785);
         }
@@ -103,7 +104,7 @@ TEST_CASE("a spinning disc keeps its momentum, gains no energy, and loses little
         simulation.advance_to(1);  // one revolution
         const sim::Stats now = simulation.stats();
         CHECK((now.linear_momentum - start.linear_momentum).norm()
-              < 1e-9 * start.linear_momentum.norm());
+              < 1e-12 * start.linear_momentum.norm());
         CHECK(total_energy(now) <= total_energy(start) * (1 + 1e-9));
         const double kept = now.angular_momentum.z() / start.angular_momentum.z();
         WARN(name << ", " << scheme.name << " keeps " << kept
@@ -138,13 +139,11 @@ TEST_CASE("the total energy of a swinging bar never rises", "[conservation]") {
         options.solver.steps = scheme.steps;
         options.solver.dt = dt;
         sim::Simulation simulation(tests::bar_scene(options), frame_time);
-        double highest = total_energy(simulation.stats());
+        const double start = total_energy(simulation.stats());
         const double scale = 8;  // energy that swings between gravity, motion and strain [J]
         for (int k = 1; k <= 50; ++k) {
             simulation.advance_to(0.02 * k);
-            const double now = total_energy(simulation.stats());
-            CHECK(now < highest + 1e-3 * scale);
-            highest = std::max(highest, now);
+            CHECK(total_energy(simulation.stats()) < start + 1e-3 * scale);
         }
         if (scheme.steps == sim::Steps::Implicit)
             CHECK(total_energy(simulation.stats()) < -0.05);
@@ -153,13 +152,16 @@ TEST_CASE("the total energy of a swinging bar never rises", "[conservation]") {
 
 TEST_CASE("ten free oscillations of a bar at 200 steps a period keep the energy within 1%",
           "[conservation]") {
+    // By fem. What slaved corners hand to the grid and back costs some, backward Euler much: both stated, not promised.
     const double period = 1 / 3.541;  // C1-H [s]
-    for (const Scheme& scheme : schemes) {
+    const Scheme scheme = GENERATE(from_range(schemes));
+    for (const auto& [name, method] : methods) {
         tests::BarOptions options;
         options.n_domains = {18, 6, 6};
         options.segment_ends = {6, 12};
-        options.middle_modulus = options.end_modulus;
-        options.solver.method = sim::Method::Fem;
+        if (method != sim::Method::Enriched)  // which, of one material, is domains
+            options.middle_modulus = options.end_modulus;
+        options.solver.method = method;
         options.solver.steps = scheme.steps;
         options.solver.dt = period / 200;
         sim::Simulation simulation(tests::bar_scene(options), frame_time);
@@ -170,10 +172,12 @@ TEST_CASE("ten free oscillations of a bar at 200 steps a period keep the energy 
             swing = std::max(swing, simulation.stats().kinetic_energy);
         }
         const double change = (total_energy(simulation.stats()) - start) / swing;
-        WARN(scheme.name << " changes the energy by " << 100 * change << "%");
+        WARN(name << ", " << scheme.name << " changes the energy by " << 100 * change << "%");
         if (scheme.steps == sim::Steps::Implicit)
-            CHECK((change < -0.01 && change > -1.5));  // damped: stated, not promised
-        else
+            CHECK((change < -0.01 && change > -1.5));
+        else if (method == sim::Method::Fem)
             CHECK(std::abs(change) < 0.01);
+        else
+            CHECK((change < 0 && change > -0.2));
     }
 }

@@ -222,6 +222,10 @@ TEST_CASE("layered cubes keep momentum and gain no energy while corners turn fre
     scene.solver.dt = 1e-3;
     scene.solver.method = GENERATE(sim::Method::Enriched, sim::Method::Domains);
     scene.solver.steps = GENERATE(sim::Steps::Implicit, sim::Steps::Bdf2, sim::Steps::Explicit);
+    scene.solver.enrich =
+        GENERATE(sim::EnrichmentCriteria{},
+                 sim::EnrichmentCriteria{.interface = false, .mixed_cell = true},
+                 sim::EnrichmentCriteria{.interface = false, .strain = true});
     for (sim::Body& body : scene.bodies) {
         const double x = body.name == "left" ? -0.21 : 0.11;
         sim::Region layer = body.regions[0];
@@ -231,7 +235,10 @@ TEST_CASE("layered cubes keep momentum and gain no energy while corners turn fre
         body.regions.push_back(layer);
         body.velocity.y() = 0.3;
     }
-    CAPTURE(int(scene.solver.method), int(scene.solver.steps));
+    CAPTURE(int(scene.solver.method),
+            int(scene.solver.steps),
+            scene.solver.enrich.mixed_cell,
+            scene.solver.enrich.strain);
     const Course course = run(scene, speed, 0.2, 20);
     CHECK(course.momentum_error < 1e-12);
     CHECK(course.highest < 1 + 1e-6);

@@ -134,6 +134,16 @@ TEST_CASE("affine transfers keep the spin of a disc over a revolution") {
     CHECK(left <= 1.001);
 }
 
+TEST_CASE("the kinetic energy of a rigid spin is half its rate times the angular momentum") {
+    const Kernel kernel = GENERATE(from_range(kernels));
+    const Transfer transfer = GENERATE(from_range(transfers));
+    CAPTURE(int(kernel), int(transfer));
+    const sim::Simulation simulation(disc(kernel, transfer, Steps::Implicit, 1e-3), 1.0 / 24);
+    const sim::Stats stats = simulation.stats();
+    CHECK(stats.kinetic_energy
+          == Approx(std::numbers::pi * stats.angular_momentum.z()).epsilon(1e-12));
+}
+
 namespace {
 
 /// A bar of points pulled along x at both ends with sides free or held.
