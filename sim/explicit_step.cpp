@@ -131,23 +131,35 @@ void Stepper::hold_prescribed() {
 
 bool Stepper::take_drifts(const State& state, double length) {
     begin_contact(state.x);
-    if (!drift_with_contact(state, state.x, state.time, length))
+    if (!take_drift(state, 0, length))
         return false;
     inner_gradient_.assign(prescribed_.corners.size(), Vec3p{});
     for (int k = 1; k < n_drifts_; ++k) {
-        std::swap(x_drift_, x_end_);
-        if (!std::isfinite(potential_.elastic_gradient(x_drift_, gradient_before_)
+        if (!std::isfinite(potential_.elastic_gradient(x_end_, gradient_before_)
                            + end_drift_of_points(length)))
             return false;
         add_at_pinned_nodes(1);
         kick_between_drifts();
-        const double time = state.time + k * length;
-        colliders_.begin_step(x_drift_, state.top_speed, time, length);
-        if (!drift_with_contact(state, x_drift_, time, length))
+        colliders_.begin_step(x_end_, state.top_speed, state.time + k * length, length);
+        if (!take_drift(state, k, length))
             return false;
     }
     return n_drifts_ == 1
            || (has_kept_way(state.x) && is_clear_of_surfaces(state, n_drifts_ * length));
+}
+
+bool Stepper::take_drift(const State& state, int number, double length) {
+    // Velocities of corners are of use where something may be met, and to the kick that ends the step.
+    const bool is_first = number == 0, is_last = number + 1 == n_drifts_;
+    if (!is_last && colliders_.empty() && grid_contact_->is_empty()) {
+        map_.move(is_first ? state.x : x_end_, length, q_moved_, x_end_);
+        ++quiet_drifts_;
+        return true;
+    }
+    if (!is_first)
+        std::swap(x_drift_, x_end_);
+    const Field& x = is_first ? state.x : x_drift_;
+    return drift_with_contact(state, x, state.time + number * length, length);
 }
 
 bool Stepper::drift_with_contact(const State& state,

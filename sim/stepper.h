@@ -146,6 +146,7 @@ class Stepper {
     bool try_explicit(State& state, double dt);
     void first_kick(const State& state);
     bool take_drifts(const State& state, double length);
+    bool take_drift(const State& state, int number, double length);
     bool drift_with_contact(const State& state, const Field& x, double time, double length);
     void kick_between_drifts();
     void gather_forces_at_nodes(const Field& gradient);

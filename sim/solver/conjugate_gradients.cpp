@@ -55,12 +55,11 @@ LinearSummary solve_linear(Potential& potential,
             summary.negative_curvature = true;
             return summary;
         }
-        // One pass: step, new residual, its norm.
+        // Two passes: the new residual and its norm; the step and the next direction, which read p once.
         const double alpha = rz / curvature;
         const double rz_next = sum_chunks(n, chunk, [&](int begin, int end) {
             Vec3p sum{};
             for (int i = begin; i < end; ++i) {
-                d[i] += alpha * p[i];
                 r[i] -= alpha * Ap[i];
                 sum += r[i] * r[i] * inverse_diagonal[i];
             }
@@ -68,11 +67,11 @@ LinearSummary solve_linear(Potential& potential,
         });
         const double beta = rz_next / rz;
         rz = rz_next;
-        if (!(rz > enough))
-            break;
         for_chunks(n, chunk, [&](int begin, int end) {
-            for (int i = begin; i < end; ++i)
+            for (int i = begin; i < end; ++i) {
+                d[i] += alpha * p[i];
                 p[i] = inverse_diagonal[i] * r[i] + beta * p[i];
+            }
         });
     }
     summary.converged = rz <= enough;
