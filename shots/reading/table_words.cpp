@@ -69,7 +69,7 @@ bool TableReader::is_word(const Value& given,
     reading_->report.error(given.at,
                            fmt::format("'{}' must be one of {}; found {}{}",
                                        name,
-                                       listed(all),
+                                       listed(available),
                                        shown(given),
                                        word != nullptr ? did_you_mean(*word, all) : ""));
     return false;
@@ -137,8 +137,12 @@ std::filesystem::path TableReader::file(const std::string& name) {
         error(name, fmt::format("there is no file '{}' (looked for {})", given, path.string()));
         return path;
     }
-    if (decides_ == Decides::Simulation)
-        record(name + ".content", content_hash(path));
+    try {
+        if (decides_ == Decides::Simulation)
+            record(name + ".content", content_hash(path));
+    } catch (const assets::Error& unreadable) {
+        error(name, unreadable.what());
+    }
     return path;
 }
 

@@ -3,6 +3,7 @@
 #include "assets/base/error.h"
 
 #include <charconv>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <set>
 
@@ -22,7 +23,9 @@ constexpr int largest_number =
 /// Reads an integer at the start of `rest` and drops it from there; false where there is none.
 bool take_integer(std::string_view& rest, int& number) {
     const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
-    if (error != std::errc{} || number < -largest_number || number > largest_number)
+    if (error == std::errc::result_out_of_range || std::abs(number) > largest_number)
+        refuse(rest, fmt::format("numbers go from -{0} to {0}", largest_number));
+    if (error != std::errc{})
         return false;
     rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
     return true;

@@ -1,4 +1,4 @@
-// Impulses of contact in explicit steps, on the degrees of freedom.
+// Impulses of contact on the velocities of the degrees of freedom.
 #pragma once
 
 #include "assets/base/vector_types.h"

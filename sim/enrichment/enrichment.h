@@ -19,7 +19,7 @@ std::vector<int> boundary_domains(const Lattice& lattice);
 ///   mixed_cell   where its centre lies in a cell with centres of two regions: scattered materials, whose domains need
 ///                not be neighbours (the limit named in [Z18 §7])
 ///   strain       where its smallest principal stretch, or the smallest over the largest, falls under a bound (the idea
-///                of Zhu et al. 2017; the bounds are ours)
+///                of [ZZL17]; the bounds are ours)
 ///
 /// and remains so until it has left by a margin: a quarter of a cell, or a tenth of stretch. So corners do not flicker.
 class Enrichment {

@@ -88,6 +88,8 @@ TEST_CASE("frame ranges") {
          {"", "a", "1-", "3-1", "1-4x0", "1-4x", "1-4y", "1 - 4", "99999999999"})
         CHECK_THROWS_AS(parse_frame_range(text), assets::Error);
     CHECK_THROWS_AS(parse_frame_list(" , "), assets::Error);
+    CHECK_THROWS_WITH(parse_frame_list("1-99999999999"),
+                      Catch::Matchers::Contains("from -10000000 to 10000000"));
 }
 
 TEST_CASE("frame numbers are padded to four digits") {
