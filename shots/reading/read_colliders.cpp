@@ -2,6 +2,7 @@
 #include "shots/reading/motion_file.h"
 #include "shots/reading/readers.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace shots {

@@ -14,6 +14,7 @@ constexpr double blurred = 0.01;  // of the surface, that may lie on parts too t
 constexpr double band = 16;       // of a level set, in voxels
 
 /// Whether one voxel below much of the surface the distance is not that of an inside: a wall is thinner than 1.5 voxels.
+/// Which side is below the triangles of a file need not tell.
 bool is_blurred(const assets::Solid& solid, const assets::TriangleMesh& surface, double voxel) {
     double area = 0, thin = 0;
     for (const auto& [a, b, c] : surface.triangles) {
@@ -22,9 +23,12 @@ bool is_blurred(const assets::Solid& solid, const assets::TriangleMesh& surface,
         const double size = twice_area.norm();
         if (!(size > 0))
             continue;
-        const Vec3 middle = (p + surface.positions[b] + surface.positions[c]) / 3;
+        const Vec3 middle = (p + surface.positions[b] + surface.positions[c]) / 3,
+                   step = voxel / size * twice_area;
         area += size;
-        if (!(solid.signed_distance(middle - voxel / size * twice_area) < -voxel / 2))
+        if (!(std::min(solid.signed_distance(middle - step),
+                       solid.signed_distance(middle + step))
+              < -voxel / 2))
             thin += size;
     }
     return !(thin <= blurred * area) || surface.triangles.empty();
@@ -50,12 +54,13 @@ void check_size(const assets::Solid& solid, double voxel, double reach) {
 
 }  // namespace
 
-ColliderField collider_field(const assets::Source& source, double resolution, double reach) {
-    double voxel = resolution / 4;
-    const auto coarse = assets::make_solid(source, voxel, voxel);
-    voxel = std::min(voxel, (coarse->max - coarse->min).minCoeff() / 2);
-    for (;; voxel /= 2) {
-        check_size(*coarse, voxel, reach);
+ColliderField collider_field(const assets::Source& source,
+                             const assets::Solid& coarse,
+                             double resolution,
+                             double reach) {
+    const double thinnest = (coarse.max - coarse.min).minCoeff();
+    for (double voxel = std::min(resolution / 4, thinnest / 2);; voxel /= 2) {
+        check_size(coarse, voxel, reach);
         const auto solid = assets::make_solid(source, voxel, band * voxel + reach);
         if (!is_blurred(*solid, assets::make_surface(source, voxel).mesh, voxel))
             return {std::make_shared<const assets::DistanceField>(*solid, voxel, reach), voxel};

@@ -104,7 +104,7 @@ MovingCollider::MovingCollider(const Collider& collider, double resolution, doub
         return;
     }
     const assets::Source source = collider_source(collider);
-    const auto solid = assets::make_solid(source, resolution / 4, resolution);
+    const auto solid = assets::make_solid(source, resolution / 4, resolution / 4);
     pivot_ = collider.pivot.value_or((solid->min + solid->max) / 2);
     thickness_ = (solid->max - solid->min).minCoeff();
     bool has_formula = false;
@@ -119,7 +119,7 @@ MovingCollider::MovingCollider(const Collider& collider, double resolution, doub
             *shape);
     if (has_formula)
         return;
-    const ColliderField field = collider_field(source, resolution, reach);
+    const ColliderField field = collider_field(source, *solid, resolution, reach);
     shape_ = field.distance;
     if (field.voxel < resolution / 4)  // made finer for walls that are no thinner than that
         thickness_ = std::min(thickness_, 1.5 * field.voxel);

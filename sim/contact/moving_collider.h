@@ -27,7 +27,7 @@ class MovingCollider {
   public:
     /// `resolution`: the scale at which details matter of what has no formula (a mesh, ellipsoids and combined shapes):
     /// the smallest domain's edge [m]. Up to a distance of `reach` [m] it is as exact outside as inside. Throws
-    /// Error(Input) as collider_field() does.
+    /// Error(Input) where a mesh is not closed, and as collider_field() does.
     MovingCollider(const Collider& collider, double resolution, double reach = 0);
 
     /// Between keys translation and the angles, about the pivot, are linear, so that a shape may turn by more than
