@@ -15,7 +15,7 @@ constexpr int segments_of_a_shape = 96;  // along its longest extent
 constexpr double slimmest = 1.0 / 500;   // of the extents, that can be drawn at reasonable cost
 const Vec3f color = Vec3f::Constant(0.35f);  // linear
 
-/// Fine enough for a plate or a rod to have an inside.
+/// Fine enough for a plate or a rod to have an inside, but for boxes, which are exact anyway.
 double spacing(const assets::Source& source, int index, double of_meshes) {
     const auto* shape = std::get_if<assets::Shape>(&source.geometry);
     if (shape == nullptr)
@@ -25,6 +25,8 @@ double spacing(const assets::Source& source, int index, double of_meshes) {
         extent[k] =
             assets::support(*shape, Vec3::Unit(k)) + assets::support(*shape, -Vec3::Unit(k));
     const double longest = extent.maxCoeff(), thinnest = extent.minCoeff();
+    if (std::holds_alternative<assets::Box>(*shape))
+        return longest / segments_of_a_shape;
     if (thinnest < slimmest * longest)
         throw assets::Error(assets::ErrorKind::Input,
                             fmt::format("a collider {} m long and {} m thick is too thin to be "

@@ -1,5 +1,6 @@
 // Bodies against colliders that are thin, fast, moving, or meshes.
 #include "sim/simulation.h"
+#include "tests/support/box_file.h"
 
 #include <catch2/catch.hpp>
 
@@ -71,19 +72,6 @@ std::filesystem::path sphere_file(const Vec3& centre, double radius, int n) {
     return path;
 }
 
-/// The boundary of a box as a mesh file.
-std::filesystem::path box_file(const Vec3& low, const Vec3& high) {
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path()
-        / ("supple_test_box_" + std::to_string(getpid()) + ".obj");
-    std::ofstream file(path);
-    for (int a = 0; a < 8; ++a)
-        file << "v " << (a & 1 ? high : low).x() << " " << (a & 2 ? high : low).y() << " "
-             << (a & 4 ? high : low).z() << "\n";
-    file << "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
-    return path;
-}
-
 }  // namespace
 
 TEST_CASE("a cube at 20 m/s does not pass through a thin wall, and gains no energy") {
@@ -117,7 +105,7 @@ TEST_CASE("a cube at 20 m/s does not pass through a thin wall, and gains no ener
     if (thrown.wall == Wall::Disc)
         collider.shape = assets::Shape{assets::Cylinder{{0, 0, low.z()}, {0, 0, 0}, 0.3}};
     else if (thrown.wall == Wall::Mesh)
-        collider.shape = assets::MeshFile{box_file(low, high)};
+        collider.shape = assets::MeshFile{tests::box_file(low, high)};
     scene.colliders.push_back(collider);
     sim::Simulation simulation(scene, frame_time);
     double highest = energy(simulation.stats());
@@ -134,6 +122,17 @@ TEST_CASE("a cube at 20 m/s does not pass through a thin wall, and gains no ener
     CHECK(simulation.stats().linear_momentum.z() > 0);  // it bounces
     for (const assets::SurfaceFrame& surface : simulation.deformed_surfaces())
         CHECK(!surface.positions.empty());  // the wall is seen, as thin as it is
+}
+
+TEST_CASE("a moving plate is drawn as coarsely as it may be, however thin") {
+    sim::Scene scene = scene_of(cube({0, 0, 0.2}, 0.2, 2, 1e6), 1e-3);
+    sim::Collider plate{assets::Shape{assets::Box{{-1, -1, -0.001}, {1, 1, 0}}}, {false, 0}};
+    plate.keys = {{0, {0, 0, 0}, {0, 0, 0}}, {1, {0.1, 0, 0}, {0, 0, 0}}};
+    scene.colliders.push_back(plate);
+    const std::size_t n =
+        sim::Simulation(scene, frame_time).surfaces().back().rest_positions.size();
+    CHECK(n > 4);
+    CHECK(n < 40000);
 }
 
 TEST_CASE("a moving wall carries a cube along by friction") {

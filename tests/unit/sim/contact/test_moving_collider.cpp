@@ -1,12 +1,11 @@
 #include "sim/contact/moving_collider.h"
+#include "tests/support/box_file.h"
 #include "tests/support/random_fields.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <filesystem>
-#include <fstream>
-#include <unistd.h>
 
 using sim::Collider;
 using sim::ColliderKey;
@@ -104,20 +103,8 @@ TEST_CASE("ellipsoids and combined shapes are sampled, fine enough for their cur
 
 TEST_CASE("a wall of a mesh has an inside, however coarse the domains") {
     const bool is_inside_out = GENERATE(false, true);
-    const auto path = std::filesystem::temp_directory_path()
-                      / ("supple_test_wall_" + std::to_string(getpid()) + ".obj");
-    const auto wall = [&](double side, double thickness) {
-        std::ofstream file(path);
-        for (int a = 0; a < 8; ++a)
-            file << "v " << (a & 1 ? side : 0) << " " << (a >> 1 & 1 ? side : 0) << " "
-                 << (a >> 2 & 1 ? thickness : 0) << "\n";
-        file << (is_inside_out
-                     ? "f 2 4 3 1\nf 7 8 6 5\nf 5 6 2 1\nf 4 8 7 3\nf 3 7 5 1\nf 6 8 4 2\n"
-                     : "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
-        file.close();
-        return MovingCollider({assets::MeshFile{path}, {}}, 0.1);
-    };
-    const MovingCollider collider = wall(0.2, 0.004);
+    const auto path = tests::box_file({0, 0, 0}, {0.2, 0.2, 0.004}, is_inside_out);
+    const MovingCollider collider({assets::MeshFile{path}, {}}, 0.1);
     CHECK(collider.thickness() <= 0.004);
     CHECK(collider.distance({0.1, 0.1, 0.002}).gap < -0.001);
     for (const double side : {-1.0, 1.0}) {
