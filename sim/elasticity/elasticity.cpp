@@ -143,38 +143,42 @@ void Elasticity::fill_brick(const Lattice& lattice,
             corner_of_local_[brick.first_local + slot + brick.step[a]] =
                 lattice.corners[p][places.lattice_corner(a)];
     }
-    const Lanes zero{};
     for (int slot = 0; slot < n_corners; slot += lane_count) {
-        const auto first = domain_of_slot.begin() + slot;
-        if (std::all_of(first, first + lane_count, [](int p) { return p < 0; }))
-            continue;
-        alignas(64) Lanes volume = zero, mu = zero, lambda = zero, law = zero - 1.0,
-                          hourglass = zero;
-        unsigned laws = 0;
-        for (int l = 0; l < lane_count; ++l) {
-            const int p = first[l];
-            brick.domain.push_back(p);
-            if (p < 0)
-                continue;
-            const Model model = body.regions[lattice.region[p]].model;
-            laws |= 1u << static_cast<int>(model);
-            law[l] = static_cast<double>(model);
-            volume[l] = lattice.domain_volume(p);
-            mu[l] = lattice.mu[p];
-            lambda[l] = lattice.lambda[p];
-            hourglass[l] = hourglass_stiffness(lattice, p);
-        }
-        brick.batch.push_back(slot);
-        brick.laws.push_back(laws);
-        brick.volume.push_back(volume);
-        brick.mu.push_back(mu);
-        brick.lambda.push_back(lambda);
-        brick.law.push_back(law);
-        brick.hourglass.push_back(hourglass);
-        brick.weight.push_back(volume * mu);
+        const int* const first = &domain_of_slot[slot];
+        if (std::any_of(first, first + lane_count, [](int p) { return p >= 0; }))
+            add_batch(lattice, body, slot, first, brick);
     }
     brick.stiffness.assign(45 * brick.batch.size(), FloatLanes{});
     bricks_.push_back(std::move(brick));
+}
+
+void Elasticity::add_batch(
+    const Lattice& lattice, const Body& body, int slot, const int* domains, Brick& brick) {
+    const Lanes zero{};
+    alignas(64) Lanes volume = zero, mu = zero, lambda = zero, law = zero - 1.0,
+                      hourglass = zero;
+    unsigned laws = 0;
+    for (int l = 0; l < lane_count; ++l) {
+        const int p = domains[l];
+        brick.domain.push_back(p);
+        if (p < 0)
+            continue;
+        const Model model = body.regions[lattice.region[p]].model;
+        laws |= 1u << static_cast<int>(model);
+        law[l] = static_cast<double>(model);
+        volume[l] = lattice.domain_volume(p);
+        mu[l] = lattice.mu[p];
+        lambda[l] = lattice.lambda[p];
+        hourglass[l] = hourglass_stiffness(lattice, p);
+    }
+    brick.batch.push_back(slot);
+    brick.laws.push_back(laws);
+    brick.volume.push_back(volume);
+    brick.mu.push_back(mu);
+    brick.lambda.push_back(lambda);
+    brick.law.push_back(law);
+    brick.hourglass.push_back(hourglass);
+    brick.weight.push_back(volume * mu);
 }
 
 BrickFields Elasticity::Scratch::fields(int n_local) {

@@ -40,6 +40,9 @@ class Elasticity : public ElasticEnergy {
     };
 
     void fill_brick(const Lattice& lattice, const Body& body, const std::vector<int>& domains);
+    // Those in lane_count neighbouring places, of which some are empty (-1).
+    static void add_batch(
+        const Lattice& lattice, const Body& body, int slot, const int* domains, Brick& brick);
     void load(const Brick& brick, const Vec3p* values, Scratch& scratch) const;
     void store(const Brick& brick, const Scratch& scratch, Vec3p* values) const;
     template <class Kernel>

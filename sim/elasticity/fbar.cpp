@@ -153,6 +153,70 @@ struct PointStiffness {
     return result;
 }
 
+/// What the stiffness of a point is made of, of all eight.
+struct PointTables {
+    Table<packed_size> A;
+    Table<9> F, inverse_transposed, stress;  // stress: r P̄
+    Table<1> p;
+
+    [[gnu::always_inline]] PointTables(const GaussLanes* stiffness,
+                                       const Deformation<GaussLanes>& at,
+                                       const Matrix3<GaussLanes>& r_P_bar,
+                                       const GaussLanes& pressure)
+        : A(stiffness),
+          F(at.F.m),
+          inverse_transposed(at.inverse_transposed.m),
+          stress(r_P_bar.m),
+          p(&pressure) {}
+
+    /// z = (A F + r P̄) b / 3 + (F : A F / 18 + p/6) t.
+    [[gnu::always_inline]] PointStiffness stiffness_at(int g,
+                                                       const double b[3][8],
+                                                       const double g_centre[24]) const {
+        PointStiffness point{};
+        double A_g[packed_size], F_g[9], inverse[9], third[9];
+        A.take(g, A_g);
+        F.take(g, F_g);
+        inverse_transposed.take(g, inverse);
+        stress.take(g, third);
+        point.p = p.value[0][g];
+        for (int row = 0; row < 9; ++row)
+            for (int column = row; column < 9; ++column)
+                point.A[row][column] = point.A[column][row] = A_g[packed(row, column)];
+        double FAF = 0;
+        for (int k = 0; k < 9; ++k) {
+            double AF = 0;
+            for (int n = 0; n < 9; ++n)
+                AF += point.A[n][k] * F_g[n];
+            FAF += F_g[k] * AF;
+            third[k] = (AF + third[k]) / 3;
+        }
+        add_row_products(inverse, b, point.g);
+        add_row_products(third, b, point.z);
+        for (int n = 0; n < 24; ++n) {
+            point.t[n] = g_centre[n] - point.g[n];
+            point.z[n] += (FAF / 18 + point.p / 6) * point.t[n];
+        }
+        return point;
+    }
+};
+
+/// weight (K - p G_c), with G_c of g_c as G of g. Rounding differs between the triangles, and CG wants a symmetric matrix.
+[[gnu::always_inline]] inline void write_symmetric(
+    const double* K, const double* g_centre, double p, double weight, float* stiffness) {
+    for (int i = 0; i < 3; ++i)
+        for (int a = 0; a < 8; ++a)
+            for (int k = 0; k < 3; ++k)
+                for (int c = 0; c < 8; ++c) {
+                    const int entry = 24 * (8 * i + a) + 8 * k + c;
+                    stiffness[entry] = static_cast<float>(
+                        weight * (K[entry] - p * g_centre[8 * k + a] * g_centre[8 * i + c]));
+                }
+    for (int row = 0; row < 24; ++row)
+        for (int column = 0; column < row; ++column)
+            stiffness[24 * row + column] = stiffness[24 * column + row];
+}
+
 }  // namespace
 
 CubeGradients::CubeGradients(double s) {
@@ -228,57 +292,12 @@ void fbar_stiffness(const CubeGradients& b,
 
     for (GaussLanes& entry : A)
         entry = r * r * entry;
-    const Matrix3<GaussLanes> stress = scaled(r, P_bar);
-    const Table<packed_size> A_table(A);
-    const Table<9> F_table(at.F.m), inverse_table(at.inverse_transposed.m),
-        stress_table(stress.m);
-    const Table<1> p_table(&p);
-
+    const PointTables tables(A, at, scaled(r, P_bar), p);
     double K[24 * 24]{}, g_centre[24]{};
     add_row_products(centre.inverse_transposed.m, b.at_centre, g_centre);
-    for (int g = 0; g < 8; ++g) {
-        PointStiffness point{};
-        double A_g[packed_size], F[9], inverse[9], third[9];
-        A_table.take(g, A_g);
-        F_table.take(g, F);
-        inverse_table.take(g, inverse);
-        stress_table.take(g, third);
-        point.p = p_table.value[0][g];
-        for (int row = 0; row < 9; ++row)
-            for (int column = row; column < 9; ++column)
-                point.A[row][column] = point.A[column][row] = A_g[packed(row, column)];
-        // z = (A F + r P̄) b / 3 + (F : A F / 18 + p/6) t.
-        double FAF = 0;
-        for (int k = 0; k < 9; ++k) {
-            double AF = 0;
-            for (int n = 0; n < 9; ++n)
-                AF += point.A[n][k] * F[n];
-            FAF += F[k] * AF;
-            third[k] = (AF + third[k]) / 3;
-        }
-        add_row_products(inverse, b.of_point[g], point.g);
-        add_row_products(third, b.of_point[g], point.z);
-        for (int n = 0; n < 24; ++n) {
-            point.t[n] = g_centre[n] - point.g[n];
-            point.z[n] += (FAF / 18 + point.p / 6) * point.t[n];
-        }
-        point.add_to(b.of_point[g], K);
-    }
-
-    const double weight = domain.volume / 8, p_sum = sum_of(p);
-    for (int i = 0; i < 3; ++i)
-        for (int a = 0; a < 8; ++a)
-            for (int k = 0; k < 3; ++k)
-                for (int c = 0; c < 8; ++c) {
-                    const int entry = 24 * (8 * i + a) + 8 * k + c;
-                    stiffness[entry] = static_cast<float>(
-                        weight
-                        * (K[entry] - p_sum * g_centre[8 * k + a] * g_centre[8 * i + c]));
-                }
-    // Rounding differs between the triangles; CG wants a symmetric matrix.
-    for (int row = 0; row < 24; ++row)
-        for (int column = 0; column < row; ++column)
-            stiffness[24 * row + column] = stiffness[24 * column + row];
+    for (int g = 0; g < 8; ++g)
+        tables.stiffness_at(g, b.of_point[g], g_centre).add_to(b.of_point[g], K);
+    write_symmetric(K, g_centre, sum_of(p), domain.volume / 8, stiffness);
 }
 
 double fbar_smallest_J(const CubeGradients& b, const CornerValues& x) {

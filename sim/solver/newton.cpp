@@ -57,6 +57,52 @@ double search_line(
     return 0;
 }
 
+double relative(double norm, double scale) {
+    return scale > 0 ? norm / scale : norm;
+}
+
+/// Newton's direction s.step from the system linearised at q, projected from then on where it is indefinite. Whether the
+/// linear solve has converged.
+bool find_direction(Potential& potential,
+                    const NewtonOptions& options,
+                    double tolerance,
+                    const Field& q,
+                    bool& project,
+                    NewtonScratch& s,
+                    NewtonSummary& summary) {
+    const auto solve = [&] {
+        const LinearSummary linear = solve_linear(
+            potential, s.gradient, tolerance, options.max_linear_iterations, s.step, s.linear);
+        summary.linear_iterations += linear.iterations;
+        return linear;
+    };
+    LinearSummary linear = solve();
+    if (linear.negative_curvature && !project) {
+        project = true;
+        potential.linearize(q, project);
+        linear = solve();
+    }
+    return linear.converged;
+}
+
+/// Adds the direction to q whatever W does, and tells what it has left of a gradient of that norm.
+void take_whole_step(Potential& potential,
+                     double norm,
+                     double scale,
+                     Field& q,
+                     NewtonScratch& s,
+                     NewtonSummary& summary) {
+    for (std::size_t i = 0; i < q.size(); ++i)
+        q[i] += s.step[i];
+    ++summary.iterations;
+    const double value = potential.value_and_gradient(q, s.gradient);
+    const double left = scaled_norm(s.gradient, potential.inverse_diagonal());
+    summary.residual = relative(left, std::max(scale, potential.gradient_scale()));
+    summary.termination = !std::isfinite(value)        ? Termination::NotFinite
+                          : left <= single_step * norm ? Termination::Converged
+                                                       : Termination::IterationLimit;
+}
+
 }  // namespace
 
 std::string to_string(Termination termination) {
@@ -82,9 +128,12 @@ NewtonSummary minimize(Potential& potential,
                        Field& q,
                        NewtonScratch& s) {
     NewtonSummary summary;
-    const int n = static_cast<int>(q.size());
-    s.gradient.resize(n);
-    s.trial_gradient.resize(n);
+    const auto end = [&](Termination termination) {
+        summary.termination = termination;
+        return summary;
+    };
+    s.gradient.resize(q.size());
+    s.trial_gradient.resize(q.size());
     double value = potential.value_and_gradient(q, s.gradient);
     if (!std::isfinite(value))
         return summary;
@@ -94,73 +143,32 @@ NewtonSummary minimize(Potential& potential,
     potential.linearize(q, project);
     double scale = 0;
     double norm_before = 0;
-    const auto relative = [&](double norm) { return scale > 0 ? norm / scale : norm; };
     for (;; ++summary.iterations) {
         // The gradient is small enough? Forces may appear on the way, as contact does: the largest met is the scale.
         scale = std::max(scale, potential.gradient_scale());
         const double goal = std::max(options.tolerance * scale, potential.gradient_noise());
         const double norm = scaled_norm(s.gradient, potential.inverse_diagonal());
-        summary.residual = relative(norm);
-        if (!(norm > goal)) {
-            summary.termination =
-                std::isfinite(norm) ? Termination::Converged : Termination::NotFinite;
-            return summary;
-        }
-        if (summary.iterations == options.max_iterations) {
-            summary.termination = Termination::IterationLimit;
-            return summary;
-        }
+        summary.residual = relative(norm, scale);
+        if (!(norm > goal))
+            return end(std::isfinite(norm) ? Termination::Converged : Termination::NotFinite);
+        if (summary.iterations == options.max_iterations)
+            return end(Termination::IterationLimit);
 
-        // Newton's direction, from the projected Hessian where the exact one is indefinite.
         if (!linearized)
             potential.linearize(q, project);
         linearized = false;
-        const double linear_tolerance =
-            forcing(options, summary.iterations, goal, norm, norm_before);
-        LinearSummary linear = solve_linear(potential,
-                                            s.gradient,
-                                            linear_tolerance,
-                                            options.max_linear_iterations,
-                                            s.step,
-                                            s.linear);
-        summary.linear_iterations += linear.iterations;
-        if (linear.negative_curvature && !project) {
-            project = true;
-            potential.linearize(q, project);
-            linear = solve_linear(potential,
-                                  s.gradient,
-                                  linear_tolerance,
-                                  options.max_linear_iterations,
-                                  s.step,
-                                  s.linear);
-            summary.linear_iterations += linear.iterations;
-        }
-        if (!linear.converged) {
-            summary.termination = Termination::LinearSolveFailed;
-            return summary;
-        }
-
-        // Step along it.
-        double trial_value = 0;
+        const double tolerance = forcing(options, summary.iterations, goal, norm, norm_before);
+        if (!find_direction(potential, options, tolerance, q, project, s, summary))
+            return end(Termination::LinearSolveFailed);
         if (!options.line_search) {
-            for (int i = 0; i < n; ++i)
-                q[i] += s.step[i];
-            ++summary.iterations;
-            value = potential.value_and_gradient(q, s.gradient);
-            scale = std::max(scale, potential.gradient_scale());
-            const double left = scaled_norm(s.gradient, potential.inverse_diagonal());
-            summary.residual = relative(left);
-            summary.termination = !std::isfinite(value)        ? Termination::NotFinite
-                                  : left <= single_step * norm ? Termination::Converged
-                                                               : Termination::IterationLimit;
+            take_whole_step(potential, norm, scale, q, s, summary);
             return summary;
         }
+        double trial_value = 0;
         const double length = search_line(potential, q, value, s, trial_value);
         if (length == 0) {
-            if (project) {
-                summary.termination = Termination::LineSearchFailed;
-                return summary;
-            }
+            if (project)
+                return end(Termination::LineSearchFailed);
             project = true;
             value = potential.value_and_gradient(q, s.gradient);
             continue;
