@@ -1,5 +1,6 @@
 #include "assets/mesh/import.h"
 
+#include "assets/base/edit_distance.h"
 #include "assets/base/error.h"
 #include "assets/mesh/edges.h"
 #include "assets/mesh/file_text.h"
@@ -22,31 +23,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Least number of letters to insert, delete or replace to make one word of the other.
-size_t edit_distance(const std::string& a, const std::string& b) {
-    std::vector<size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), size_t{0});
-    for (size_t i = 0; i < a.size(); ++i) {
-        size_t diagonal = std::exchange(row[0], i + 1);
-        for (size_t j = 0; j < b.size(); ++j) {
-            const size_t replaced = diagonal + (a[i] != b[j]);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-        }
-    }
-    return row.back();
-}
-
 // " Did you mean 'x.obj'?" where the folder holds a file with nearly that name, else nothing.
 std::string nearest_name(const fs::path& file) {
     const std::string wanted = file.filename().string();
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
     std::error_code ignored;
     std::string nearest;
-    size_t least = std::max<size_t>(3, wanted.size() / 3 + 1);
+    int least = std::max(3, static_cast<int>(wanted.size()) / 3 + 1);
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
         const std::string name = entry.path().filename().string();
-        const size_t distance = edit_distance(wanted, name);
+        const int distance = edit_distance(wanted, name);
         // Folders come in no order: the alphabet decides between names equally near.
         if (distance < least || (distance == least && !nearest.empty() && name < nearest)) {
             least = distance;

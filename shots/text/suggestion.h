@@ -7,9 +7,6 @@
 
 namespace shots {
 
-/// Fewest insertions, deletions, replacements and swaps of neighbours that turn one word into the other.
-int edit_distance(std::string_view a, std::string_view b);
-
 /// The allowed word nearest to `word`, upper and lower case alike, or empty where none is near: at most a third of its letters
 /// (at least one) may differ, or one is the beginning of the other.
 std::string nearest(std::string_view word, const std::vector<std::string>& allowed);

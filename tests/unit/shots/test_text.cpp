@@ -1,3 +1,4 @@
+#include "assets/base/edit_distance.h"
 #include "assets/base/error.h"
 #include "shots/text/frame_range.h"
 #include "shots/text/suggestion.h"
@@ -60,10 +61,10 @@ TEST_CASE("wrong units are told what is allowed") {
 }
 
 TEST_CASE("the edit distance counts insertions, deletions, replacements and swaps") {
-    CHECK(edit_distance("", "abc") == 3);
-    CHECK(edit_distance("kitten", "sitting") == 3);
-    CHECK(edit_distance("solver", "sovler") == 1);
-    CHECK(edit_distance("same", "same") == 0);
+    CHECK(assets::edit_distance("", "abc") == 3);
+    CHECK(assets::edit_distance("kitten", "sitting") == 3);
+    CHECK(assets::edit_distance("solver", "sovler") == 1);
+    CHECK(assets::edit_distance("same", "same") == 0);
 }
 
 TEST_CASE("suggestions are near or absent") {
