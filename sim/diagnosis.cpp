@@ -1,8 +1,11 @@
 #include "sim/diagnosis.h"
 
+#include "sim/base/cell_box.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace sim {
 
@@ -68,6 +71,18 @@ std::string cause(const Scene& scene, const NewtonSummary& summary, double dt, d
                       "try a smaller load, or steps = \"implicit\" with damping");
 }
 
+/// Index of a region of a body that has this corner, or is this point.
+int region_of(const AssembledBody& body, int corner) {
+    if (body.points)
+        return body.points->region[corner];
+    const auto has_corner = [&](const auto& corners) {
+        return std::find(corners.begin(), corners.end(), corner) != corners.end();
+    };
+    const auto& domains = body.lattice.corners;
+    const auto found = std::find_if(domains.begin(), domains.end(), has_corner);
+    return body.lattice.region[found - domains.begin()];
+}
+
 }  // namespace
 
 assets::Error diagnose(const Scene& scene,
@@ -101,6 +116,38 @@ assets::Error diagnose(const Scene& scene,
                         worst.place.z(),
                         worst.J,
                         cause(scene, summary, dt, worst.J))};
+}
+
+assets::Error diagnose_flown_apart(const Scene& scene,
+                                   const Assembly& assembly,
+                                   const State& state) {
+    // What is not finite is fastest.
+    const auto is_slower = [](const Vec3p& a, const Vec3p& b) {
+        const auto squared = [](const Vec3p& v) {
+            const double square = dot(v, v);
+            return std::isfinite(square) ? square : std::numeric_limits<double>::infinity();
+        };
+        return squared(a) < squared(b);
+    };
+    const auto fastest = std::max_element(state.v.begin(), state.v.end(), is_slower);
+    const int c = static_cast<int>(fastest - state.v.begin());
+    const int b = assembly.body_of(c);
+    const AssembledBody& body = assembly.bodies[b];
+    const Vec3 at = unpadded(state.x[c]);
+    return {assets::ErrorKind::Diverged,
+            fmt::format("after {:.6g} s: {}\n"
+                        "  fastest: body \"{}\", region \"{}\", at ({:.4g}, {:.4g}, {:.4g}), "
+                        "{:.3g} m/s\n"
+                        "  likely cause: a velocity, force or pin far beyond the size of the "
+                        "scene",
+                        state.time,
+                        FlownApart().what(),
+                        scene.bodies[b].name,
+                        scene.bodies[b].regions[region_of(body, c - body.begin)].name,
+                        at.x(),
+                        at.y(),
+                        at.z(),
+                        std::sqrt(dot(*fastest, *fastest)))};
 }
 
 }  // namespace sim

@@ -16,4 +16,9 @@ assets::Error diagnose(const Scene& scene,
                        double dt,
                        const NewtonSummary& summary);
 
+/// Where FlownApart was thrown in the step after `state`: names its time, and body, region, place and speed of what was fastest.
+assets::Error diagnose_flown_apart(const Scene& scene,
+                                   const Assembly& assembly,
+                                   const State& state);
+
 }  // namespace sim

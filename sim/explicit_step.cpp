@@ -27,14 +27,17 @@ double sum_of(const Vec3p& v) {
 
 }  // namespace
 
+double Stepper::stable_limit(std::size_t b) const {
+    const AssembledBody& body = assembly_.bodies[b];
+    return safety * 2
+           / (body.points ? points_[b]->highest_frequency(body.kernel)
+                          : body.highest_frequency);
+}
+
 double Stepper::stable_limit() const {
     double limit = infinity;
-    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b) {
-        const AssembledBody& body = assembly_.bodies[b];
-        const double highest =
-            body.points ? points_[b]->highest_frequency(body.kernel) : body.highest_frequency;
-        limit = std::min(limit, safety * 2 / highest);
-    }
+    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b)
+        limit = std::min(limit, stable_limit(b));
     return limit;
 }
 

@@ -1,4 +1,5 @@
 // Which step comes next: as long as allowed, halved where it fails, grown back slowly.
+#include "sim/base/cell_box.h"
 #include "sim/diagnosis.h"
 #include "sim/stepper.h"
 
@@ -22,52 +23,76 @@ constexpr int quiet_per_drift = 2;       // since the last touch, for each drift
 
 void Stepper::advance(State& state, double end, double dt) {
     failures.clear();
-    const bool is_explicit = scene_.solver.steps == Steps::Explicit;
     measure_speed(state);
-    while (state.time < end) {
-        // Equal steps to the end, so that the last one is no sliver.
-        const double remaining = end - state.time;
-        const SurfaceContact::Start start = {state.x, state.v, state.top_speed, state.contacts};
-        surfaces_.see(start);
-        const double stable =
-            is_explicit ? std::min({dt, limit_of_way(cells_per_step), stable_limit()}) : dt;
-        const double drift = std::min(stable, state.dt_limit);
-        if (is_explicit) {
-            prescribe(scene_, assembly_, state.time, state.time + drift, prescribed_);
-            choose_free_corners(state.x);
-        }
-        const double longest = is_explicit ? longest_of_drifts(state, drift, dt) : drift;
-        const double allowed =
-            std::min({longest,
-                      colliders_.largest_step(state.x, state.v, state.time, longest),
-                      surfaces_.largest_step(start, longest),
-                      relative_limit(state)});
-        const double n = std::max(1.0, std::ceil(remaining / allowed - rounding));
-        if (n > most_steps)
-            throw assets::Error(assets::ErrorKind::Diverged,
-                                fmt::format("at {} s: {:.0e} steps of {} s to the end of the "
-                                            "frame; dt is too short, or "
-                                            "so stiff, light or fast a body asks for it",
-                                            state.time,
-                                            n,
-                                            remaining / n));
-        const double length = remaining / n;
-        n_drifts_ = std::max(1, static_cast<int>(std::ceil(length / drift - rounding)));
-        if (try_step(state, length)) {
-            ++steps;
-            state.dt_limit *= std::pow(growth, n_drifts_);
-            if (n == 1)
-                state.time = end;
-            continue;
-        }
-        if (n_drifts_ > 1) {
-            // By a touch, or too far or too fast for a map so old: single drifts try again from here, each under a map of
-            // its own. What is wrong with more than that fails there too, and is told.
-            state.quiet_drifts = 0;
-            continue;
-        }
-        halve(state, length, stable);
+    try {
+        while (state.time < end)
+            go_on(state, end, dt);
+    } catch (const FlownApart&) {
+        throw diagnose_flown_apart(scene_, assembly_, state);
     }
+}
+
+void Stepper::go_on(State& state, double end, double dt) {
+    const bool is_explicit = scene_.solver.steps == Steps::Explicit;
+    // Equal steps to the end, so that the last one is no sliver.
+    const double remaining = end - state.time;
+    const SurfaceContact::Start start = {state.x, state.v, state.top_speed, state.contacts};
+    surfaces_.see(start);
+    const double stable =
+        is_explicit ? std::min({dt, limit_of_way(cells_per_step), stable_limit()}) : dt;
+    const double drift = std::min(stable, state.dt_limit);
+    if (is_explicit) {
+        prescribe(scene_, assembly_, state.time, state.time + drift, prescribed_);
+        choose_free_corners(state.x);
+    }
+    const double longest = is_explicit ? longest_of_drifts(state, drift, dt) : drift;
+    const double allowed =
+        std::min({longest,
+                  colliders_.largest_step(state.x, state.v, state.time, longest),
+                  surfaces_.largest_step(start, longest),
+                  relative_limit(state)});
+    const double n = std::max(1.0, std::ceil(remaining / allowed - rounding));
+    const double length = remaining / n,
+                 n_drifts = std::max(1.0, std::ceil(length / drift - rounding));
+    if (!(n * n_drifts <= most_steps))
+        refuse_steps(state, n * n_drifts, length / n_drifts);
+    n_drifts_ = static_cast<int>(n_drifts);
+    if (try_step(state, length)) {
+        ++steps;
+        state.dt_limit *= std::pow(growth, n_drifts_);
+        if (n == 1)
+            state.time = end;
+        return;
+    }
+    if (n_drifts_ > 1) {
+        // By a touch, or too far or too fast for a map so old: single drifts try again from here, each under a map of
+        // its own. What is wrong with more than that fails there too, and is told.
+        state.quiet_drifts = 0;
+        return;
+    }
+    halve(state, length, stable);
+}
+
+void Stepper::refuse_steps(const State& state, double n, double length) const {
+    // Whoever asks for them, else dt itself, or what failures have left of it.
+    std::string who = "dt is too short";
+    for (std::size_t b = 0; b < ranges_.size(); ++b) {
+        const bool is_fast = cells_per_step * ranges_[b].cell_size / speed_[b] <= 2 * length;
+        const bool is_stiff =
+            scene_.solver.steps == Steps::Explicit && stable_limit(b) <= 2 * length;
+        if (is_fast || is_stiff)
+            who = fmt::format("body \"{}\" {}",
+                              scene_.bodies[b].name,
+                              is_fast ? fmt::format("moves at {:.3g} m/s", speed_[b])
+                                      : std::string("is so stiff and light"));
+    }
+    throw assets::Error(
+        assets::ErrorKind::Diverged,
+        fmt::format("after {:.6g} s: {:.0e} steps of {:.3g} s to the end of the frame; {}",
+                    state.time,
+                    n,
+                    length,
+                    who));
 }
 
 void Stepper::halve(State& state, double failed, double stable) {

@@ -52,7 +52,10 @@ Stepper::Stepper(const Scene& scene, Assembly& assembly)
       surfaces_(scene.contact.mode == Contact::Mode::Surface ? contact_surfaces(scene, assembly)
                                                              : std::vector<ContactSurface>{},
                 friction_),
-      potential_(map_, elastic_bodies(assembly), {&colliders_, &surfaces_, &grid_hold_}, make_points()) {
+      potential_(map_,
+                 elastic_bodies(assembly),
+                 {&colliders_, &surfaces_, &grid_hold_},
+                 make_points()) {
     if (scene.contact.mode == Contact::Mode::Grid)
         measured_.emplace(contact_surfaces(scene, assembly), friction_);
     for (const AssembledBody& body : assembly.bodies)

@@ -78,6 +78,8 @@ class Stepper {
   private:
     // step_control.cpp
     double longest_of_drifts(const State& state, double drift, double dt) const;
+    void go_on(State& state, double end, double dt);
+    [[noreturn]] void refuse_steps(const State& state, double n, double length) const;
     void halve(State& state, double failed, double stable);
     bool try_step(State& state, double dt);
 
@@ -140,6 +142,7 @@ class Stepper {
     void set_reactions();
 
     // explicit_step.cpp
+    double stable_limit(std::size_t body) const;
     double stable_limit() const;
     double limit_of_way(double cells) const;
     double limit_of_slaves(const Field& v, double cells) const;

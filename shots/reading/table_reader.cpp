@@ -11,6 +11,9 @@
 namespace shots {
 namespace {
 
+// Products of three numbers, as energies are, stay finite.
+constexpr double largest_number = 1e30;
+
 std::string as_text(const Vec3& v) {
     return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
 }
@@ -29,7 +32,7 @@ std::string allowed_numbers(const Range& range) {
         limits.push_back(fmt::format("at most {}", range.most));
     if (std::isfinite(range.below))
         limits.push_back(fmt::format("less than {}", range.below));
-    return limits.empty() ? "finite" : fmt::format("{}", fmt::join(limits, " and "));
+    return fmt::format("{}", fmt::join(limits, " and "));
 }
 
 }  // namespace
@@ -152,9 +155,12 @@ std::optional<double> TableReader::number_of(const Value& value,
         wrong_type(value, name, name_of(dimension));
         return {};
     }
-    if (std::isfinite(number) && holds(range, number))
+    if (!(std::abs(number) <= largest_number))
+        wrong_type(value, name, fmt::format("from {} to {}", -largest_number, largest_number));
+    else if (!holds(range, number))
+        wrong_type(value, name, allowed_numbers(range));
+    else
         return number;
-    wrong_type(value, name, allowed_numbers(range));
     return {};
 }
 

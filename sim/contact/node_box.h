@@ -1,8 +1,7 @@
 // Numbers for the nodes of a grid that a few bodies share.
 #pragma once
 
-#include "assets/base/error.h"
-#include "sim/base/field.h"
+#include "sim/base/cell_box.h"
 
 #include <array>
 #include <cmath>
@@ -14,21 +13,19 @@ namespace sim {
 class NodeBox {
   public:
     /// Those that quadratic stencils of points between two ends reach, cells being h wide.   [m]
-    /// Throws Error(Diverged) where there are more than can be held.
+    /// Throws FlownApart.
     NodeBox(const Vec3p& low_end, const Vec3p& high_end, double h) {
-        double count = 1;
+        Vec3p size{}, sum{};
         for (int k = 0; k < 3; ++k) {
             const double low = std::floor(low_end[k] / h) - 1,
                          high = std::floor(high_end[k] / h) + 2;
             low_[k] = static_cast<long>(low);
             n_[k] = static_cast<long>(high - low + 1);
-            count *= high - low + 1;
+            size[k] = high - low + 1;
+            sum[k] = low + high;
         }
-        if (!(count < most_nodes))
-            throw assets::Error(assets::ErrorKind::Diverged,
-                                "bodies spread over more cells than contact on the grid can "
-                                "hold; they have flown apart");
-        number_.assign(static_cast<std::size_t>(count), -1);
+        check_spread(size, sum);
+        number_.assign(static_cast<std::size_t>(size[0] * size[1] * size[2]), -1);
     }
 
     int& operator()(long i, long j, long k) {
@@ -36,7 +33,6 @@ class NodeBox {
     }
 
   private:
-    static constexpr double most_nodes = 1 << 28;
     std::array<long, 3> low_{}, n_{};
     std::vector<int> number_;
 };

@@ -1,6 +1,6 @@
 #include "sim/enrichment/enrichment.h"
 
-#include "assets/base/error.h"
+#include "sim/base/cell_box.h"
 #include "sim/base/floor.h"
 #include "sim/enrichment/thin_domains.h"
 
@@ -14,7 +14,6 @@ namespace sim {
 
 namespace {
 
-constexpr double most_cells = 1 << 28;
 constexpr double margin = 0.25;    // in cells
 constexpr double least_cells = 3;  // across a part that its nodes can bend
 constexpr int none = -1, several = -2;
@@ -162,11 +161,7 @@ void Enrichment::find_centres(const Lattice& lattice, const Vec3p* corners) {
     }
     low_ = floor_of(low) - to_all;  // the margin may reach one cell further
     const Vec3p size = floor_of(high) - low_ + 2 * to_all;
-    if (!(size[0] * size[1] * size[2] < most_cells)
-        || !std::isfinite(total[0] + total[1] + total[2]))
-        throw assets::Error(
-            assets::ErrorKind::Diverged,
-            "a body spreads over more background cells than can be held; it has flown apart");
+    check_spread(size, total);
     step_ = {1, int(size[0]), int(size[0] * size[1])};
     // Boxes around slender bodies are nearly empty: only cells that were marked are cleared.
     cells_.resize(

@@ -28,7 +28,7 @@ class Enrichment {
     Enrichment(const Lattice& lattice, const EnrichmentCriteria& criteria, double cell_size);
 
     /// Decides anew, after the domains enriched so far; the corners of enriched domains become free.
-    /// `corners` (#C) [m], `free` (#C) is only ever set to 1. Throws Error(Diverged) where the body has flown apart.
+    /// `corners` (#C) [m], `free` (#C) is only ever set to 1. Throws FlownApart.
     void update(const Lattice& lattice, const Vec3p* corners, char* free);
 
     const std::vector<char>& enriched() const { return enriched_; }  // (#D)

@@ -33,7 +33,7 @@ class CornerMap {
         Kernel kernel = Kernel::Linear;
     };
 
-    /// `free` (#C): whether a corner is free. Throws Error(Diverged) where a body spreads over more than 2^28 cells.
+    /// `free` (#C): whether a corner is free. Throws FlownApart.
     void rebuild(const Field& corners,
                  const std::vector<char>& free,
                  const std::vector<BodyRange>& bodies);

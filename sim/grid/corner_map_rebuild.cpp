@@ -1,5 +1,5 @@
 // How slaved corners are grouped and nodes are numbered.
-#include "assets/base/error.h"
+#include "sim/base/cell_box.h"
 #include "sim/base/floor.h"
 #include "sim/grid/corner_map.h"
 #include "sim/grid/kernel.h"
@@ -13,7 +13,6 @@ namespace sim {
 
 namespace {
 
-constexpr double most_cells = 1 << 28;
 constexpr double widest_kernel = 4;  // nodes along an axis
 constexpr int word = 64;             // bits
 
@@ -110,12 +109,7 @@ CornerMap::Box CornerMap::box_of_slaves(const Field& corners,
         sum += cell;
     }
     const Vec3p extent = high - box.low + 1.0;
-    const Vec3p nodes = extent + widest_kernel;
-    if (!(nodes[0] * nodes[1] * nodes[2] < most_cells)
-        || !std::isfinite(sum[0] + sum[1] + sum[2]))
-        throw assets::Error(
-            assets::ErrorKind::Diverged,
-            "a body spreads over more background cells than can be held; it has flown apart");
+    check_spread(extent + widest_kernel, sum);
     box.n = {int(extent[0]), int(extent[1]), int(extent[2])};
     return box;
 }
