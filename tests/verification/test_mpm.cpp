@@ -280,14 +280,17 @@ TEST_CASE(
 TEST_CASE("the unit of length changes nothing but the numbers") {
     // D15. Stresses and densities stay, so velocities do, times scale as lengths. Powers of two: every bit but the
     // exponents is the same. Published faults: gradients not divided by the cell size.
-    const Steps steps = GENERATE(Steps::Explicit, Steps::Implicit);
-    const Kernel kernel = GENERATE(Kernel::Quadratic, Kernel::Cubic);
+    const Steps steps = GENERATE(Steps::Explicit, Steps::SemiImplicit, Steps::Implicit);
+    const Kernel kernel = GENERATE(Kernel::Linear, Kernel::Quadratic, Kernel::Cubic);
+    const Transfer transfer = GENERATE(Transfer::Flip, Transfer::Apic);
+    if (steps == Steps::Explicit && kernel == Kernel::Linear)
+        return;  // refused: a point on a node jumps in its stress
     const auto positions = [&](double unit) {
         sim::Body body =
             tests::box_body({4, 3, 2}, 0.0625 * unit, unit * Vec3(0.25, -0.5, 0.125));
         body.regions[0].model = sim::Model::FixedCorotated;
         body.spin = Vec3(3, 20, -5) / unit;
-        sim::Scene scene = points_scene(body, kernel, Transfer::Flip, steps);
+        sim::Scene scene = points_scene(body, kernel, transfer, steps);
         scene.solver.dt = unit / 1024;
         scene.solver.pic_rate = 5 / unit;
         scene.forces = {sim::Gravity{Vec3(0, 0, -10) / unit}};
@@ -304,7 +307,7 @@ TEST_CASE("the unit of length changes nothing but the numbers") {
         double most = 0;
         for (std::size_t p = 0; p < metres.size(); ++p)
             most = std::max(most, (metres[p] - others[p]).norm());
-        CAPTURE(int(steps), int(kernel), unit);
+        CAPTURE(int(steps), int(kernel), int(transfer), unit);
         CHECK(most <= 1e-6);
     }
 }

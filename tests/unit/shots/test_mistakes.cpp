@@ -97,6 +97,7 @@ TEST_CASE("wrong values are told with what is allowed") {
         {"\"1 MPa\"", "\"1 mpa\"", "18:17: ", "did you mean 'MPa'?"},
         {"\"1 MPa\"", "-1e6", "18:17: ", "greater than 0"},
         {"\"1 MPa\"", "0", "18:17: ", "greater than 0"},
+        {"\"1 MPa\"", "1e31", "18:17: ", "from -1e+30 to 1e+30"},
         {"\"1 MPa\"", "nan", "18:17: ", "must be"},
         {"\"1 MPa\"", "true", "18:17: ", "must be a pressure; found true"},
         {"\"1 MPa\"", "2001-01-01", "18:17: ", "dates"},
