@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace shots {
 struct Request {
     std::filesystem::path shot;
     std::vector<std::string> overrides;  // "key.path=value"
-    std::string frames;                  // "1001-1024x2, 1030"; empty: those of the shot
+    std::optional<std::string> frames;   // "1001-1024x2, 1030"; none: those of the shot
     std::filesystem::path out;           // empty: output.path of the shot
     bool json = false;                   // results as JSON lines
     bool quiet = false;                  // no progress, no warnings

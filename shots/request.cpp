@@ -19,15 +19,15 @@ Shot requested_shot(const Request& request) {
 }
 
 std::vector<int> requested_frames(const Request& request, const Shot& shot) {
-    if (request.frames.empty())
+    if (!request.frames)
         return shot.frames.numbers();
-    const std::vector<int> frames = parse_frame_list(request.frames);
+    const std::vector<int> frames = parse_frame_list(*request.frames);
     for (const int number : frames)
         if (number < shot.frames.first || number > shot.frames.last)
             throw assets::Error(
                 assets::ErrorKind::Input,
                 fmt::format("--frames {}: the shot has no frame {}; it has {}-{}",
-                            request.frames,
+                            *request.frames,
                             number,
                             shot.frames.first,
                             shot.frames.last));

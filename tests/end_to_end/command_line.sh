@@ -8,6 +8,7 @@ expect_exit 2 "$supple"
 expect_exit 2 "$supple" sim
 expect_exit 2 "$supple" sim "$tiny" --no-such-option
 expect_exit 2 "$supple" sim "$tiny" --threads 0
+expect_exit 2 "$supple" sim "$tiny" --frames ""
 expect_exit 2 "$supple" sim "$tiny" --frames 3-7
 grep -q "no frame 5" err.txt || fail "$(cat err.txt)"
 
