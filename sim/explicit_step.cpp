@@ -66,7 +66,7 @@ bool Stepper::try_explicit(State& state, double dt) {
     const double length = dt / n_drifts_;
     dt_hat_ = length / 2;  // of a kick
     prescribe(scene_, assembly_, state.time, state.time + dt, prescribed_);
-    transfer_to_nodes(state, state.v, &gradient_);
+    transfer_to_nodes(state, state.x, state.v, &gradient_);
     prescribe_dofs(state, state.x, dt, dt);
     begin_forces(state, length);
 
@@ -78,8 +78,7 @@ bool Stepper::try_explicit(State& state, double dt) {
     end_on_targets();
 
     // The forces there. The motion must not be faster than the step can follow.
-    if (!std::isfinite(potential_.elastic_gradient(x_end_, end_gradient_)
-                       + end_drift_of_points(length)))
+    if (!std::isfinite(potential_.elastic_gradient(x_end_, end_gradient_) + end_drift(length)))
         return false;
     add_at_pinned_nodes(0.5);
     const double frequency = second_kick(n_drifts_ == 1 ? gradient_ : gradient_before_);
@@ -113,7 +112,7 @@ void Stepper::first_kick(const State& state) {
             q_moved_[k] = damped * (state.v[c] + (dt_hat_ * inverse_mass_[k]) * force);
         }
     });
-    way_.assign(has_points_ ? n : 0, Vec3p{});
+    way_.assign(n, Vec3p{});
     grid_gradient_.assign(has_points_ ? n : 0, Vec3p{});
     add_start_gradient(grid_gradient_);
     inner_at_nodes_.assign(pinned_nodes_.size(), Vec3p{});
@@ -139,7 +138,7 @@ bool Stepper::take_drifts(const State& state, double length) {
     inner_gradient_.assign(prescribed_.corners.size(), Vec3p{});
     for (int k = 1; k < n_drifts_; ++k) {
         if (!std::isfinite(potential_.elastic_gradient(x_end_, gradient_before_)
-                           + end_drift_of_points(length)))
+                           + end_drift(length)))
             return false;
         add_at_pinned_nodes(1);
         kick_between_drifts();
@@ -312,22 +311,24 @@ double Stepper::frequency_of(const Vec3p& sums) const {
 }
 
 void Stepper::kick_nodes(const State& state, double dt) {
-    // Slaves keep of their velocity what the grid could not see (FLIP): v = T q + keep (v_n - T q_n), in one go.
+    // Slaves keep of their velocity what the grid could not see (FLIP): v = T q + unseen (v_n - T q_n), in one go.
     const int n = map_.n_dofs();
     const auto& step = potential_.step();
     const double damped = 1 / (1 + scene_.solver.damping * dt_hat_),
-                 keep = std::pow(damped, 2 * n_drifts_) * share_kept(dt);
+                 undamped = std::pow(damped, 2 * n_drifts_);
+    const Memory memory{0, undamped, undamped * share_kept(dt)};  // kicks act at both ends
     gather_forces_at_nodes(end_gradient_);
     for (int i = map_.n_free(); i < n; ++i) {
         const Vec3p inner = has_points_ ? grid_gradient_[i] : Vec3p{};
         const Vec3p v =
             damped * (q_moved_[i] + (dt_hat_ * inverse_mass_[i]) * (node_force_[i] - inner));
         q_moved_[i] += step.is_free[i] * (v - q_moved_[i]);
-        q_n_[i] = q_moved_[i] - keep * q_n_[i];
     }
+    const std::vector<Vec3p> gained = gained_by_nodes(memory);
+    for (int i = map_.n_free(); i < n; ++i)
+        q_n_[i] = q_moved_[i] - memory.unseen * q_n_[i];
     map_.apply_to_slaves(q_n_, v_end_);
-    for (const int c : map_.slave_corner())
-        v_end_[c] += keep * state.v[c];
+    return_to_slaves(state.x, state.v, memory, gained, v_end_);
 }
 
 void Stepper::set_explicit_reactions(const State& state, double dt) {

@@ -216,14 +216,14 @@ void Stepper::guess(const State& state, double dt) {
         q_[i] += step.is_free[i] * (step.q_tilde[i] + inverse_mass_[i] / damped * impulse[i]);
 }
 
-bool Stepper::is_held(const AssembledBody& body) const {
-    const int index = static_cast<int>(&body - assembly_.bodies.data());
+bool Stepper::is_held(int body) const {
+    const auto& [begin, end, cell_size, kernel] = ranges_[body];
     return std::any_of(prescribed_.corners.begin(),
                        prescribed_.corners.end(),
-                       [&](int c) { return c >= body.begin && c < body.end; })
+                       [&](int c) { return c >= begin && c < end; })
            || std::any_of(
                pinned_nodes_.begin(), pinned_nodes_.end(), [&](const PinnedNode& node) {
-                   return map_.dof_body()[node.dof] == index;
+                   return map_.dof_body()[node.dof] == body;
                });
 }
 
@@ -231,8 +231,9 @@ void Stepper::balance_momentum() {
     // The solve is inexact. The momentum of a body that nothing holds is known without it: elastic forces sum to zero,
     // and what colliders give is in the gradient.
     const double damped = 1 + scene_.solver.damping * dt_hat_;
-    for (const AssembledBody& body : assembly_.bodies) {
-        if (is_held(body))
+    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b) {
+        const AssembledBody& body = assembly_.bodies[b];
+        if (is_held(static_cast<int>(b)))
             continue;
         Vec3p missing{};
         double mass = 0;
@@ -242,8 +243,9 @@ void Stepper::balance_momentum() {
                        - assembly_.mass[c] * moved_[c];
             mass += assembly_.mass[c][0];
         }
+        shift_[b] = missing / mass;
         for (int c = body.begin; c < body.end; ++c)
-            moved_[c] += missing / mass;
+            moved_[c] += shift_[b];
     }
 }
 

@@ -119,11 +119,11 @@ void Stepper::add_start_gradient(Field& gradient) {
             points->add_start_gradient(gradient);
 }
 
-double Stepper::end_drift_of_points(double length) {
+double Stepper::end_drift(double length) {
+    for (int i = map_.n_free(); i < map_.n_dofs(); ++i)
+        way_[i] += length * q_moved_[i];
     if (!has_points_)
         return 0;
-    for (std::size_t i = 0; i < way_.size(); ++i)
-        way_[i] += length * q_moved_[i];
     std::swap(grid_gradient_, grid_gradient_before_);
     grid_gradient_.assign(map_.n_dofs(), Vec3p{});
     double energy = 0;

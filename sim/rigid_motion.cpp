@@ -36,8 +36,9 @@ RigidMotion rigid_motion(
         const Vec3 axis = principal.eigenvectors().col(k);
         const double about_axis = principal.eigenvalues()[k];
         if (about_axis > mass * thin * thin)
-            rigid.spin += padded(axis.dot(L) / about_axis * axis);
+            rigid.inverse_inertia += axis * axis.transpose() / about_axis;
     }
+    rigid.spin = padded(Vec3(rigid.inverse_inertia * L));
     return rigid;
 }
 

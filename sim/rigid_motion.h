@@ -5,9 +5,11 @@
 
 namespace sim {
 
-/// v(x) = velocity + spin × (x - centre).   [m], [m/s], [rad/s]
+/// v(x) = velocity + spin × (x - centre), and what turns an angular momentum about the centre into a spin.
+/// [m], [m/s], [rad/s], [1/(kg m²)]
 struct RigidMotion {
     Vec3p centre{}, velocity{}, spin{};
+    Mat3 inverse_inertia = Mat3::Zero();
 
     Vec3p at(const Vec3p& x) const { return velocity + cross(spin, x - centre); }
 };

@@ -1,7 +1,5 @@
 #include "sim/stepper.h"
 
-#include "sim/base/parallel.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -9,9 +7,6 @@ namespace sim {
 
 namespace {
 
-constexpr int chunk = 8192;
-constexpr double thin =
-    0.01;  // what does not turn about its own axis: a body no thicker than that, in cells
 constexpr double forgetting = 1;  // rate at which a body's top speed fades [1/s]
 
 double energy_scale(const Lattice& lattice) {
@@ -64,9 +59,9 @@ Stepper::Stepper(const Scene& scene, Assembly& assembly)
 
 void Stepper::begin_step(const State& state, double dt, Scheme scheme) {
     prescribe(scene_, assembly_, state.time, state.time + dt, prescribed_);
-    choose_free_corners(state.x);
     start_scheme(state, dt, scheme);
-    transfer_to_nodes(state, v_hat_, nullptr);
+    choose_free_corners(potential_.step().x_n);
+    transfer_to_nodes(state, potential_.step().x_n, v_hat_, nullptr);
     expect_free_motion();
     prescribe_dofs(state, potential_.step().x_n, dt_hat_, dt);
     q_.assign(map_.n_dofs(), Vec3p{});
@@ -127,77 +122,6 @@ Stepper::Motion Stepper::motion_before(const State& state, double dt, int c) con
     return {is_free * (dt * state.v[c] - dt / 2 * dv) + prescribed_dx, is_free * dv};
 }
 
-void Stepper::transfer_to_nodes(const State& state, const Field& v, const Field* inner) {
-    // Mass and momentum of slaves to nodes: M = Tᵀ m, M q_n = Tᵀ (m v); free corners keep their own. Lumped means over the
-    // corners around a node see a rotation too slow where corners lie on one side of it, so the body's rigid motion goes
-    // over by its value at the node and only the rest by means: rigid motion is exact, and so is momentum, as
-    // Σ_i w_ic x_i = x_c. APIC carries rotation by itself.
-    const int n = map_.n_dofs();
-    const bool is_affine = scene_.solver.transfer == Transfer::Apic;
-    corner_.resize(state.x.size());
-    std::vector<RigidMotion> rigid(ranges_.size());
-    for (std::size_t b = 0; b < ranges_.size(); ++b) {
-        const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
-        if (slaves.begin == slaves.end)
-            continue;
-        const CornerMap::BodyRange& range = ranges_[b];
-        rigid[b] = rigid_motion(
-            assembly_.mass, state.x, v, range.begin, range.end, thin * range.cell_size);
-        for_chunks(slaves.end - slaves.begin, chunk, [&](int begin, int end) {
-            for (int s = slaves.begin + begin; s < slaves.begin + end; ++s) {
-                const int c = map_.slave_corner()[s];
-                const Vec3p& m = assembly_.mass[c];
-                const Vec3p split = is_affine ? Vec3p{} : rigid[b].at(state.x[c]);
-                corner_[c] = m * (v[c] - split) + Vec3p{0, 0, 0, m[0]};  // mass in the fourth
-            }
-        });
-    }
-    q_n_.resize(n);
-    for (std::size_t b = 0; b < ranges_.size(); ++b)
-        map_.gather_at_nodes(static_cast<int>(b), corner_, q_n_);
-    if (is_affine)
-        add_affine_momentum(state);
-
-    // A node that corners only touch with weight zero has no mass. It moves with the body at first: points on a node see
-    // the slope of linear kernels all the same, so implicit steps put it where the stress asks for.
-    dof_mass_.resize(n);
-    inverse_mass_.resize(n);
-    for (int i = map_.n_free(); i < n; ++i) {
-        const double mass = q_n_[i][3];
-        dof_mass_[i] = mass;
-        inverse_mass_[i] = mass > 0 ? 1 / mass : 0;
-        q_n_[i] = inverse_mass_[i] * q_n_[i] * Vec3p{1, 1, 1, 0};
-        if (!is_affine || !(mass > 0))
-            q_n_[i] += rigid[map_.dof_body()[i]].at(map_.dof_position()[i]);
-    }
-    for (int k = 0; k < map_.n_free(); ++k) {
-        const int c = map_.free_corner()[k];
-        dof_mass_[k] = assembly_.mass[c][0];
-        inverse_mass_[k] = assembly_.inverse_mass[c];
-    }
-    transfer_forces(inner);
-}
-
-void Stepper::transfer_forces(const Field* inner) {
-    // What acts on slaves, to nodes. Forces of insides act on corners alone: those of points go to nodes by themselves.
-    node_force_.resize(map_.n_dofs());
-    for (std::size_t b = 0; b < ranges_.size(); ++b) {
-        const AssembledBody& body = assembly_.bodies[b];
-        if (body.points && body.has_weight_alone)
-            continue;
-        if (inner != nullptr && !body.points)
-            map_.gather_at_nodes(static_cast<int>(b), assembly_.force, *inner, node_force_);
-        else
-            map_.gather_at_nodes(static_cast<int>(b), assembly_.force, node_force_);
-    }
-    const Vec3p gravity = padded(assembly_.gravity);
-    for (int i = map_.n_free(); i < map_.n_dofs(); ++i) {
-        const AssembledBody& body = assembly_.bodies[map_.dof_body()[i]];
-        if (body.points && body.has_weight_alone)
-            node_force_[i] = dof_mass_[i] * gravity;
-    }
-}
-
 void Stepper::expect_free_motion() {
     // q~ = (q_n + dt^ M⁻¹ f) / (1 + damping dt^); damping acts at the end of the step, inside M.
     const int n = map_.n_dofs();
@@ -247,21 +171,19 @@ void Stepper::end_on_targets() {
 void Stepper::commit(State& state, double dt) {
     // Corner velocities: the new ones of the degrees of freedom, and for slaved corners what the grid could not see
     // of the old ones (FLIP).
+    const double damped = 1 + scene_.solver.damping * dt_hat_;
+    const Memory memory{1, 1 / damped, share_kept(dt)};  // forces act at the end
     Field& seen = corner_;
     map_.apply_to_slaves(q_n_, seen);
-    const double keep = share_kept(dt);
     state.v = moved_;
     for (const int c : map_.slave_corner())
-        state.v[c] += keep * (v_hat_[c] - seen[c]);
+        state.v[c] -= memory.unseen * seen[c];
+    way_.resize(map_.n_dofs());
+    for (int i = map_.n_free(); i < map_.n_dofs(); ++i)
+        way_[i] = dt_hat_ * q_moved_[i];
+    return_to_slaves(potential_.step().x_n, v_hat_, memory, gained_by_nodes(memory), state.v);
     std::swap(state.x, x_end_);
     end_step(state, dt);
-}
-
-double Stepper::share_kept(double dt) const {
-    // It fades at the rate of PIC: exp(-pic_rate dt) is kept per step, so that halving dt does not drain more (the paper
-    // keeps 0.95 per step).
-    return scene_.solver.transfer == Transfer::Apic ? 0
-                                                    : std::exp(-scene_.solver.pic_rate * dt);
 }
 
 void Stepper::end_step(State& state, double dt) {

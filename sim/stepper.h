@@ -95,15 +95,38 @@ class Stepper {
     };
 
     Motion motion_before(const State& state, double dt, int c) const;
-    void transfer_to_nodes(const State& state, const Field& v, const Field* inner);
-    void transfer_forces(const Field* inner);
     void expect_free_motion();
     void prescribe_dofs(const State& state, const Field& x_n, double drift, double dt);
     void end_on_targets();
     void commit(State& state, double dt);
-    double share_kept(double dt) const;
     void end_step(State& state, double dt);
     void measure_speed(const State& state);
+
+    // transfer.cpp
+    // Of corners at x that move with v, under the map there; `inner`: their gradient, if that goes over as well.
+    void transfer_to_nodes(const State& state,
+                           const Field& x,
+                           const Field& v,
+                           const Field* inner);
+    void transfer_forces(const Field* inner);
+    double share_kept(double dt) const;
+
+    /// What the end of a step takes over from its start.
+    struct Memory {
+        double way = 0;       // after which its momentum counts: 0 none of it, 1 all
+        double undamped = 1;  // what damping leaves of velocities
+        double unseen = 1;    // what stays of the part of them that nodes do not see (FLIP)
+    };
+
+    // Angular momentum by forces, about the centres of the bodies at the start.   [kg m²/s]
+    std::vector<Vec3p> gained_by_nodes(const Memory& memory) const;
+    // From v = T (q - unseen q_n) of slaves to what they have at the end, FLIP's T q + unseen (v_before - T q_n) and their
+    // share of the angular momentum that nodes have gained, unless the body is held.
+    void return_to_slaves(const Field& x_n,
+                          const Field& v_before,
+                          const Memory& memory,
+                          const std::vector<Vec3p>& gained,
+                          Field& v) const;
 
     // step_contact.cpp: contact after the velocities are known
     std::vector<GridPair> pairs_on_grid() const;
@@ -118,7 +141,8 @@ class Stepper {
     // From force_on(k-th pinned node, its degree of freedom).   [N]
     void set_node_reactions(const std::function<Vec3p(int, int)>& force_on);
     void add_start_gradient(Field& gradient);
-    double end_drift_of_points(double length);
+    // The energy of points there.
+    double end_drift(double length);
     void add_at_pinned_nodes(double share);
     double seen_frequency_of_points();
     double relative_limit(const State& state) const;
@@ -137,7 +161,7 @@ class Stepper {
     void keep_inner_force(State& state);
     void guess(const State& state, double dt);
     bool start_from_rest();
-    bool is_held(const AssembledBody& body) const;
+    bool is_held(int body) const;
     void balance_momentum();
     void set_reactions();
 
@@ -197,6 +221,8 @@ class Stepper {
     Field q_n_, q_;                     // (#dofs) [m/s]
     // (#dofs) Tᵀ f; explicit steps: of domains with their stress, and at nodes alone   [N]
     Field node_force_;
+    std::vector<RigidMotion> rigid_;  // (#bodies) before the step, of those with slaves
+    std::vector<Vec3p> shift_;        // (#bodies) what balances momentum in moved_ [m/s]
     Field q_moved_;  // (#dofs) what moved_ comes from, but for a rigid shift [m/s]
 
     /// A degree of freedom with prescribed components, and their velocity [m/s].
@@ -208,8 +234,9 @@ class Stepper {
     std::vector<PrescribedDof> held_;
     std::vector<PinnedNode> pinned_nodes_;
     std::vector<NodeReaction> node_reactions_;
-    // Of points in explicit steps, where a drift ends and where it began, and the way since the step did (#dofs)   [N], [m]
-    Field grid_gradient_, grid_gradient_before_, way_;
+    // Of points in explicit steps, where a drift ends and where it began (#dofs) [N]
+    Field grid_gradient_, grid_gradient_before_;
+    Field way_;                      // of nodes since the step began (#dofs) [m]
     Field moved_;                    // (#C) velocity that moves the corners in this step [m/s]
     Field corner_;                   // (#C) scratch of one function and what it calls
     Field reaction_;                 // (#C) of pins [N]
