@@ -13,6 +13,14 @@ namespace {
 constexpr int chunk = 8192;
 constexpr double cells_between_parts = 0.6;  // by which two may near each other in a step
 
+/// The gradient of a rotation, [spin]x.
+Gradient change_by(const Vec3p& spin) {
+    Gradient result;
+    for (int j = 0; j < 3; ++j)
+        result.column[j] = cross(spin, padded(Vec3(Vec3::Unit(j))));
+    return result;
+}
+
 }  // namespace
 
 std::vector<GridEnergy*> Stepper::make_points() {
@@ -35,71 +43,70 @@ void Stepper::start(State& state) {
         state.points.emplace_back(body.points ? body.points->size() : 0);
     if (scene_.solver.transfer != Transfer::Apic)
         return;
-    // Of the rotation that a body starts with: B = [spin]x D.
-    state.affine.assign(state.x.size(), Gradient{});
-    prescribe(scene_, assembly_, state.time, state.time, prescribed_);
-    choose_free_corners(state.x);
-    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b) {
-        const auto [begin, end, n_chunks] = map_.slaves_of(static_cast<int>(b));
-        for (int s = begin; s < end; ++s) {
-            const Vec3p D = map_.second_moment(static_cast<int>(b), s);
-            for (int j = 0; j < 3; ++j)
-                state.affine[map_.slave_corner()[s]].column[j] =
-                    D[j] * padded(scene_.bodies[b].spin.cross(Vec3::Unit(j)));
-        }
-    }
+    state.affine.resize(state.x.size());
+    for (std::size_t b = 0; b < ranges_.size(); ++b)
+        std::fill(state.affine.begin() + ranges_[b].begin,
+                  state.affine.begin() + ranges_[b].end,
+                  change_by(padded(scene_.bodies[b].spin)));
 }
 
 void Stepper::add_affine_momentum(const State& state) {
-    // Node i gets Σ_p w_ip m_p B_p D_p⁻¹ (x_i - x_p). [JSS15 eq. 8]
-    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b) {
-        const int body = static_cast<int>(b);
+    // Node i gets Σ_p w_ip m_p C_p (x_i - x_p). [JSS15 eq. 8] has B_p D_p⁻¹ with D where the point is now: the same but for
+    // linear kernels, whose D changes on the way, so that B of a rigid rotation would be another one the next time.
+    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b)
         map_.add_transposed(
-            body,
+            static_cast<int>(b),
             CornerMap::Factor::Moment,
             [&](const CornerMap::Slaves& at, Gradient* values) {
                 for (int s = at.begin; s < at.end; ++s) {
                     const int c = map_.slave_corner()[s];
-                    const Vec3p D = map_.second_moment(body, s);
                     for (int j = 0; j < 3; ++j)
                         values[s - at.begin].column[j] =
-                            assembly_.mass[c] * state.affine[c].column[j] / D[j];
+                            assembly_.mass[c] * state.affine[c].column[j];
                 }
             },
             q_n_);
-    }
 }
 
 void Stepper::commit_affine(State& state, const Field& q) const {
+    // A corner that is free may be slaved next: its surroundings turn with the body.
     if (state.affine.empty())
         return;
     for (const int c : map_.free_corner())
-        state.affine[c] = {};
-    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b)
+        state.affine[c] = change_by(rigid_[assembly_.body_of(c)].spin);
+    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b) {
+        // B D⁻¹ of linear kernels is their slope, also on a face of cells, where both B and D vanish.
+        const bool is_linear = ranges_[b].kernel == Kernel::Linear;
+        const double inverse_D =
+            is_linear ? 1 : 1 / map_.second_moment(static_cast<int>(b));
         map_.visit_gradients(static_cast<int>(b),
-                             CornerMap::Factor::Moment,
+                             is_linear ? CornerMap::Factor::Slope : CornerMap::Factor::Moment,
                              q,
                              [&](const CornerMap::Slaves& at, Gradient* values) {
                                  for (int s = at.begin; s < at.end; ++s)
-                                     state.affine[map_.slave_corner()[s]] =
-                                         values[s - at.begin];
+                                     for (int j = 0; j < 3; ++j)
+                                         state.affine[map_.slave_corner()[s]].column[j] =
+                                             inverse_D * values[s - at.begin].column[j];
                              });
+    }
 }
 
-double Stepper::affine_energy(const State& state) const {
-    double energy = 0;
+Stepper::AffineMotion Stepper::affine_motion(const State& state) const {
+    AffineMotion sum;
     for (std::size_t b = 0; b < ranges_.size() && !state.affine.empty(); ++b) {
         const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
+        const double D = map_.second_moment(static_cast<int>(b));
         for (int s = slaves.begin; s < slaves.end; ++s) {
             const int c = map_.slave_corner()[s];
-            const Vec3p D = map_.second_moment(static_cast<int>(b), s);
+            const double moment = assembly_.mass[c][0] * D;
             for (int j = 0; j < 3; ++j) {
-                const Vec3p& B = state.affine[c].column[j];
-                energy += assembly_.mass[c][0] / 2 * dot(B, B) / D[j];
+                const Vec3p& C = state.affine[c].column[j];
+                sum.energy += moment / 2 * dot(C, C);
+                sum.angular_momentum += moment * Vec3::Unit(j).cross(unpadded(C));
             }
         }
     }
-    return energy;
+    return sum;
 }
 
 void Stepper::set_node_reactions(const std::function<Vec3p(int, int)>& force_on) {

@@ -101,11 +101,9 @@ Stats stats_of(Assembly& assembly, const Stepper& stepper, const State& state) {
         stats.linear_momentum += momentum;
         stats.angular_momentum += x.cross(momentum);
     }
-    for (std::size_t c = 0; c < state.affine.size(); ++c)  // Σ_i w_i (x_i - x) × v_i
-        for (int j = 0; j < 3; ++j)
-            stats.angular_momentum +=
-                assembly.mass[c][0] * Vec3::Unit(j).cross(unpadded(state.affine[c].column[j]));
-    stats.kinetic_energy += stepper.affine_energy(state);
+    const Stepper::AffineMotion affine = stepper.affine_motion(state);
+    stats.kinetic_energy += affine.energy;
+    stats.angular_momentum += affine.angular_momentum;
     for (const HeldContact& contact : state.contacts)
         stats.elastic_energy += contact.energy;
     stats.collider_penetration =

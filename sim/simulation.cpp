@@ -16,7 +16,7 @@ namespace {
 constexpr double steps_per_frame = 10;  // where the shot gives no dt
 
 // Begins every checkpoint; counts up where what checkpoint() writes changes.
-constexpr char checkpoint_format[] = "state 1";
+constexpr char checkpoint_format[] = "state 2";
 
 void append(std::vector<std::byte>& bytes, const void* data, std::size_t size) {
     const std::size_t before = bytes.size();

@@ -19,7 +19,7 @@ struct State {
         inner_force_before;  // of insides and contacts on corners, where the last step and the one before ended [N]
     Field x_before,
         v_before;  // where the last step began; kept by BDF2 alone, empty before its first step
-    std::vector<Gradient> affine;  // B of [JSS15]: Σ_i w_i v_i (x_i - x)ᵀ; of APIC alone [m²/s]
+    std::vector<Gradient> affine;  // C = B D⁻¹ of [JSS15], how v changes around x; of APIC alone [1/s]
     std::vector<PointState> points;     // (#bodies) empty for those of domains
     std::vector<double> top_speed;      // (#bodies) that any corner has reached lately [m/s]
     std::vector<HeldContact> contacts;  // that the last step ended with

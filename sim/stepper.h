@@ -50,8 +50,14 @@ class Stepper {
     /// Mass on the degrees of freedom of the last step [kg], and the forces of the pins on corners (#C) [N].
     double mass_on_dofs() const;
 
-    /// Of what APIC remembers of how the velocity changes around corners, Σ_c m/2 tr(B D⁻¹ Bᵀ), where the last step has led.   [J]
-    double affine_energy(const State& state) const;
+    struct AffineMotion {
+        double energy = 0;               // Σ_c m/2 tr(C D Cᵀ) [J]
+        Vec3 angular_momentum{0, 0, 0};  // Σ_c m Σ_j e_j × (C D)_j [kg m²/s]
+    };
+
+    /// Of what APIC remembers of how the velocity changes around corners that are slaved, by the mean of D over all places: a
+    /// rotation keeps both while corners pass through their cells.
+    AffineMotion affine_motion(const State& state) const;
 
     const Field& reaction() const { return reaction_; }
 

@@ -29,7 +29,7 @@ void Stepper::transfer_to_nodes(const State& state,
     shift_.assign(ranges_.size(), Vec3p{});
     for (std::size_t b = 0; b < ranges_.size(); ++b) {
         const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
-        if (slaves.begin == slaves.end)
+        if (slaves.begin == slaves.end && !is_affine)
             continue;
         const CornerMap::BodyRange& range = ranges_[b];
         rigid_[b] =

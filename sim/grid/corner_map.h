@@ -121,8 +121,9 @@ class CornerMap {
     /// The corner of each slave.
     const std::vector<int>& slave_corner() const { return slave_corner_; }
 
-    /// Σ_i w_i (x_i - x)_j² at a slave of a body, the diagonal of D in [JSS15 eq. 8], at least 1e-6 h².   [m²]
-    Vec3p second_moment(int body, int slave) const;
+    /// Σ_i w_i (x_i - x)_j² of a body's kernel, the diagonal of D in [JSS15 eq. 8]; of linear kernels, where it depends on the
+    /// place in the cell, the mean over it.   [m²]
+    double second_moment(int body) const;
 
   private:
     struct Group {

@@ -9,9 +9,6 @@ namespace sim {
 
 namespace {
 
-constexpr double least_moment =
-    1e-6;  // in cells squared: a linear spline has none on its nodes
-
 /// The factors of a slave's stencil in one axis after the other, w of T and d of ∂w: see CornerMap::Factor.
 template <class S>
 struct Factors {
@@ -163,16 +160,9 @@ CornerMap::Slaves CornerMap::slaves_of(int body) const {
             (n_groups + group_block - 1) / group_block};
 }
 
-Vec3p CornerMap::second_moment(int body, int slave) const {
+double CornerMap::second_moment(int body) const {
     const Part& part = parts_[body];
-    const Vec3p& t = slave_local_[slave];
-    return visit_spline(part.kernel,
-                        [&]<class S>(S) {
-                            const Vec3p exact =
-                                S::n == 2 ? t * (1 - t) : Vec3p{} + S::second_moment;
-                            const Vec3p least = Vec3p{} + least_moment;
-                            return Vec3p(exact > least ? exact : least);
-                        })
+    return visit_spline(part.kernel, [&]<class S>(S) { return S::second_moment; })
            * (part.cell_size * part.cell_size);
 }
 
