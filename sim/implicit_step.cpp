@@ -216,17 +216,6 @@ void Stepper::guess(const State& state, double dt) {
         q_[i] += step.is_free[i] * (step.q_tilde[i] + inverse_mass_[i] / damped * impulse[i]);
 }
 
-bool Stepper::is_held(int body) const {
-    const auto& [begin, end, cell_size, kernel] = ranges_[body];
-    return std::any_of(prescribed_.corners.begin(),
-                       prescribed_.corners.end(),
-                       [&](int c) { return c >= begin && c < end; })
-           || std::any_of(
-               pinned_nodes_.begin(), pinned_nodes_.end(), [&](const PinnedNode& node) {
-                   return map_.dof_body()[node.dof] == body;
-               });
-}
-
 void Stepper::balance_momentum() {
     // The solve is inexact. The momentum of a body that nothing holds is known without it: elastic forces sum to zero,
     // and what colliders give is in the gradient.

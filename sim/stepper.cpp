@@ -161,6 +161,17 @@ void Stepper::prescribe_dofs(const State& state, const Field& x_n, double drift,
     }
 }
 
+bool Stepper::is_held(int body) const {
+    const auto& [begin, end, cell_size, kernel] = ranges_[body];
+    return std::any_of(prescribed_.corners.begin(),
+                       prescribed_.corners.end(),
+                       [&](int c) { return c >= begin && c < end; })
+           || std::any_of(
+               pinned_nodes_.begin(), pinned_nodes_.end(), [&](const PinnedNode& node) {
+                   return map_.dof_body()[node.dof] == body;
+               });
+}
+
 void Stepper::end_on_targets() {
     for (const int c : prescribed_.corners)  // no drift by rounding
         for (int axis = 0; axis < 3; ++axis)

@@ -103,6 +103,7 @@ class Stepper {
     Motion motion_before(const State& state, double dt, int c) const;
     void expect_free_motion();
     void prescribe_dofs(const State& state, const Field& x_n, double drift, double dt);
+    bool is_held(int body) const;
     void end_on_targets();
     void commit(State& state, double dt);
     void end_step(State& state, double dt);
@@ -167,7 +168,6 @@ class Stepper {
     void keep_inner_force(State& state);
     void guess(const State& state, double dt);
     bool start_from_rest();
-    bool is_held(int body) const;
     void balance_momentum();
     void set_reactions();
 

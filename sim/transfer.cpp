@@ -119,11 +119,15 @@ void Stepper::return_to_slaves(const Field& x_n,
     for (std::size_t b = 0; b < ranges_.size(); ++b) {
         const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
         const RigidMotion& rigid = rigid_[b];
+        const bool returns =
+            scene_.solver.transfer == Transfer::Flip && !is_held(static_cast<int>(b));
         const auto gain = [&](int begin, int end) {
             Vec3p sum{};
             for (int s = slaves.begin + begin; s < slaves.begin + end; ++s) {
                 const int c = map_.slave_corner()[s];
                 v[c] += memory.unseen * v_before[c];
+                if (!returns)
+                    continue;
                 const Vec3p arm = x_n[c] - rigid.centre, way = x_end_[c] - x_n[c];
                 sum += assembly_.mass[c]
                        * (cross(arm + way, v[c] - shift_[b])
@@ -132,8 +136,7 @@ void Stepper::return_to_slaves(const Field& x_n,
             return sum;
         };
         const Vec3p missing = gained[b] - sum_chunks(slaves.end - slaves.begin, chunk, gain);
-        if (slaves.begin == slaves.end || scene_.solver.transfer == Transfer::Apic
-            || is_held(static_cast<int>(b)))
+        if (!returns || slaves.begin == slaves.end)
             continue;
         const Vec3p spin = padded(Vec3(rigid.inverse_inertia * unpadded(missing)));
         for_chunks(ranges_[b].end - ranges_[b].begin, chunk, [&](int begin, int end) {

@@ -14,9 +14,7 @@
 #include "assets/mesh/weld.h"
 
 #include <algorithm>
-#include <numeric>
 #include <system_error>
-#include <utility>
 
 namespace assets {
 namespace {

@@ -125,8 +125,8 @@ double spin_left(const sim::Scene& scene, double time) {
 }  // namespace
 
 TEST_CASE("points keep the spin of a disc over a revolution") {
-    // By affine transfers not to the last digit: the second kick of a step meets the points where they have moved to, while their nodes are
-    // those of the start; that is of the order of the turn in a step, 6e-3, times the kicks.
+    // By affine transfers not to the last digit: the second kick of a step meets the points where they have moved to, while
+    // their nodes are those of the start; that is of the order of the turn in a step, 6e-3, times the kicks.
     const Kernel kernel = GENERATE(Kernel::Quadratic, Kernel::Cubic);
     const Transfer transfer = GENERATE(from_range(transfers));
     CAPTURE(int(kernel), int(transfer));
