@@ -28,8 +28,10 @@ constexpr double least_margin =
 
 }  // namespace
 
-SurfaceContact::SurfaceContact(std::vector<ContactSurface> bodies, const PairFriction& friction)
-    : bodies_(std::move(bodies)), near_(bodies_) {
+SurfaceContact::SurfaceContact(std::vector<ContactSurface> bodies,
+                               const PairFriction& friction,
+                               double hardness)
+    : hardness_(hardness), bodies_(std::move(bodies)), near_(bodies_) {
     const int n = static_cast<int>(bodies_.size());
     for (int a = 0; a < n; ++a) {
         folds_.emplace_back(bodies_[a]);
@@ -180,7 +182,8 @@ SurfaceContact::Contact SurfaceContact::prepared(const ContactPoint& point, int 
     contact.pair = k;
     contact.index = static_cast<int>(&vertex - bodies_[pair.of_vertices].vertices.data());
     const double scale = std::max(1.0, wave_factor * pair.top_speed / vertex.wave_speed);
-    contact.stiffness = stiffness * scale * vertex.young_modulus * vertex.area / contact.edge;
+    contact.stiffness =
+        hardness_ * stiffness * scale * vertex.young_modulus * vertex.area / contact.edge;
 
     const Vec3 start = contact.separation(x_n_);
     if (const double depth = contact.depth(start); depth > 0) {

@@ -26,7 +26,7 @@ struct HeldContact {
 ///
 /// d is linear in the corners while gap, n and the weights of ContactPoint are held: linearised where the step is expected
 /// to end, the energy is convex, and the solve is repeated where it has gone far from there (relinearize). Momentum is
-/// exact by construction, angular momentum as p = o there. k = stiffness E A / s for a vertex of area A, more where bodies
+/// exact by construction, angular momentum as p = o there. k = hardness 40 E A / s for a vertex of area A, more where bodies
 /// meet faster than waves spread.
 ///
 /// A new linearisation may find a vertex deeper where the step starts than the step before had left it: where a fold opens
@@ -35,7 +35,9 @@ struct HeldContact {
 /// with (HeldContact), and comes back slowly (rest_recovery, impact_recovery): else a step of backward Euler can only lose energy.
 class SurfaceContact : public ContactEnergy {
   public:
-    SurfaceContact(std::vector<ContactSurface> bodies, const PairFriction& friction);
+    SurfaceContact(std::vector<ContactSurface> bodies,
+                   const PairFriction& friction,
+                   double hardness);
     SurfaceContact(const SurfaceContact&) = delete;  // its parts refer to each other
     SurfaceContact& operator=(const SurfaceContact&) = delete;
 
@@ -156,6 +158,7 @@ class SurfaceContact : public ContactEnergy {
     Contact prepared(const ContactPoint& point, int pair) const;
     double held_energy(int pair, int vertex) const;
 
+    double hardness_ = 1;
     std::vector<ContactSurface> bodies_;
     std::vector<FoldWatch> folds_;  // (#bodies)
     NearDomainLists near_;

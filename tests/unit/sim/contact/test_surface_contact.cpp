@@ -26,7 +26,7 @@ struct Blocks {
     std::vector<double> still{0, 0};
 
     explicit Blocks(const sim::Friction& friction)
-        : contact({upper, lower}, sim::PairFriction(scene(friction))) {}
+        : contact({upper, lower}, sim::PairFriction(scene(friction)), 1) {}
 
     static sim::Scene scene(const sim::Friction& friction) {
         sim::Scene scene;
