@@ -127,6 +127,8 @@ class Stepper {
 
     // Angular momentum by forces, about the centres of the bodies at the start.   [kg m²/s]
     std::vector<Vec3p> gained_by_nodes(const Memory& memory) const;
+    // What turns corners that have come from x_n so that the body gains an angular momentum.   [rad/s]
+    Vec3p spin_for(const Vec3p& missing, int body, const Field& x_n) const;
     // From v = T (q - unseen q_n) of slaves to what they have at the end, FLIP's T q + unseen (v_before - T q_n) and their
     // share of the angular momentum that nodes have gained, unless the body is held.
     void return_to_slaves(const Field& x_n,

@@ -11,6 +11,7 @@ namespace {
 constexpr int chunk = 8192;
 constexpr double thin =
     0.01;  // what does not turn about its own axis: a body no thicker than that, in cells
+constexpr int spin_passes = 3;  // each leaves a share as large as the angle that a step turns by
 
 }  // namespace
 
@@ -108,6 +109,28 @@ std::vector<Vec3p> Stepper::gained_by_nodes(const Memory& memory) const {
     return gained;
 }
 
+Vec3p Stepper::spin_for(const Vec3p& missing, int b, const Field& x_n) const {
+    // spin × r has the angular momentum Σ m r' × (spin × r) = (tr S - S) spin, S = Σ m r r'ᵀ, with r' where corners end.
+    const int first = ranges_[b].begin, last = ranges_[b].end;
+    const RigidMotion& rigid = rigid_[b];
+    Mat3 S = Mat3::Zero();
+    for (int k = 0; k < 3; ++k) {
+        const Vec3p column = sum_chunks(last - first, chunk, [&](int begin, int end) {
+            Vec3p sum{};
+            for (int c = first + begin; c < first + end; ++c)
+                sum += assembly_.mass[c] * (x_end_[c][k] - rigid.centre[k])
+                       * (x_n[c] - rigid.centre);
+            return sum;
+        });
+        S.col(k) = unpadded(column);
+    }
+    const Mat3 A = S.trace() * Mat3::Identity() - S;
+    Vec3 spin = Vec3::Zero();
+    for (int pass = 0; pass < spin_passes; ++pass)
+        spin += rigid.inverse_inertia * (unpadded(missing) - A * spin);
+    return padded(spin);
+}
+
 void Stepper::return_to_slaves(const Field& x_n,
                                const Field& v_before,
                                const Memory& memory,
@@ -138,7 +161,7 @@ void Stepper::return_to_slaves(const Field& x_n,
         const Vec3p missing = gained[b] - sum_chunks(slaves.end - slaves.begin, chunk, gain);
         if (!returns || slaves.begin == slaves.end)
             continue;
-        const Vec3p spin = padded(Vec3(rigid.inverse_inertia * unpadded(missing)));
+        const Vec3p spin = spin_for(missing, static_cast<int>(b), x_n);
         for_chunks(ranges_[b].end - ranges_[b].begin, chunk, [&](int begin, int end) {
             for (int c = ranges_[b].begin + begin; c < ranges_[b].begin + end; ++c)
                 v[c] += cross(spin, x_n[c] - rigid.centre);
