@@ -50,7 +50,8 @@ AssembledBody::AssembledBody(const Body& body,
     }
     elasticity = make_elastic_energy(lattice, body, solver.quadrature);
     highest_frequency = sim::highest_frequency(*elasticity, lattice);
-    enrichment.emplace(lattice, solver.enrich, cell_size);
+    if (method == Method::Enriched)
+        enrichment.emplace(lattice, solver.enrich, cell_size);
     for (const Skin& skin : body.skins)
         surfaces.emplace_back(lattice, body, skin);
 }

@@ -28,7 +28,7 @@ struct AssembledBody {
     double cell_size = 0;          // of its background grid [m]
     double highest_frequency = 0;  // that its corners swing with at rest; 0 of points [rad/s]
     std::unique_ptr<ElasticEnergy> elasticity;  // of domains
-    std::optional<Enrichment> enrichment;       // of domains
+    std::optional<Enrichment> enrichment;       // of Method::Enriched
     std::optional<MaterialPoints> points;       // in place of both
     std::vector<EmbeddedSurface> surfaces;      // none of points
     bool has_weight_alone = true;               // no other force acts on it

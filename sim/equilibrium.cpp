@@ -39,7 +39,7 @@ bool Stepper::try_equilibrium(State& state,
                               double time_end,
                               NewtonSummary& summary) {
     prescribe(scene_, assembly_, time_begin, time_end, prescribed_);
-    choose_free_corners(state.x);
+    make_map(state, state.x);
     const int n = map_.n_dofs();
     auto& step = potential_.step();
     step.dt = 1;  // degrees of freedom are displacements

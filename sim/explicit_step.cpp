@@ -214,11 +214,11 @@ void Stepper::gather_forces_at_nodes(const Field& gradient) {
 
 bool Stepper::has_kept_way(const Field& x) const {
     // The length of the step was chosen by speeds at its start.
-    for (const auto& [begin, end, cell_size, kernel] : ranges_) {
+    for (const CornerMap::BodyRange& range : ranges_) {
         double squared = 0;
-        for (int c = begin; c < end; ++c)
+        for (int c = range.begin; c < range.end; ++c)
             squared = std::max(squared, dot(x_end_[c] - x[c], x_end_[c] - x[c]));
-        if (squared > std::pow(cells_per_step * cell_size, 2))
+        if (squared > std::pow(cells_per_step * range.cell_size, 2))
             return false;
     }
     return true;
@@ -311,12 +311,9 @@ double Stepper::frequency_of(const Vec3p& sums) const {
 }
 
 void Stepper::kick_nodes(const State& state, double dt) {
-    // Slaves keep of their velocity what the grid could not see (FLIP): v = T q + unseen (v_n - T q_n), in one go.
     const int n = map_.n_dofs();
     const auto& step = potential_.step();
-    const double damped = 1 / (1 + scene_.solver.damping * dt_hat_),
-                 undamped = std::pow(damped, 2 * n_drifts_);
-    const Memory memory{0, undamped, undamped * share_kept(dt)};  // kicks act at both ends
+    const double damped = 1 / (1 + scene_.solver.damping * dt_hat_);
     gather_forces_at_nodes(end_gradient_);
     for (int i = map_.n_free(); i < n; ++i) {
         const Vec3p inner = has_points_ ? grid_gradient_[i] : Vec3p{};
@@ -324,6 +321,11 @@ void Stepper::kick_nodes(const State& state, double dt) {
             damped * (q_moved_[i] + (dt_hat_ * inverse_mass_[i]) * (node_force_[i] - inner));
         q_moved_[i] += step.is_free[i] * (v - q_moved_[i]);
     }
+    if (moves_grid_)
+        return map_.apply_to_slaves(q_moved_, v_end_);
+    // Slaves keep of their velocity what a grid at rest could not see (FLIP): v = T q + unseen (v_n - T q_n), in one go.
+    const double undamped = std::pow(damped, 2 * n_drifts_);
+    const Memory memory{0, undamped, undamped * share_kept(dt)};  // kicks act at both ends
     const std::vector<Vec3p> gained = gained_by_nodes(memory);
     for (int i = map_.n_free(); i < n; ++i)
         q_n_[i] = q_moved_[i] - memory.unseen * q_n_[i];

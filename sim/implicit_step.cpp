@@ -40,14 +40,16 @@ bool Stepper::try_bdf2(State& state, double dt) {
 
     Field x_before = state.x, v_before = state.v;
     end_implicit(state, dt);
-    if (has_event)
+    if (has_event) {
         x_before.clear();
+        state.grid.x_before.clear();
+    }
     state.x_before = std::move(x_before);
     state.v_before = std::move(v_before);
     return true;
 }
 
-bool Stepper::solve_step(const State& state, double dt, Scheme scheme) {
+bool Stepper::solve_step(State& state, double dt, Scheme scheme) {
     begin_step(state, dt, scheme);
     begin_contact(state.x);
     guess(state, dt);

@@ -91,8 +91,8 @@ void Stepper::commit_affine(State& state, const Field& q) const {
     }
 }
 
-Stepper::AffineMotion Stepper::affine_motion(const State& state) const {
-    AffineMotion sum;
+Stepper::BeyondCorners Stepper::affine_motion(const State& state) const {
+    BeyondCorners sum;
     for (std::size_t b = 0; b < ranges_.size() && !state.affine.empty(); ++b) {
         const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
         const double D = map_.second_moment(static_cast<int>(b));
@@ -173,7 +173,7 @@ double Stepper::relative_limit(const State& state) const {
     std::vector<Vec3p> mean(n);
     std::vector<double> deviation(n, 0);
     for (std::size_t b = 0; b < n; ++b) {
-        const auto& [begin, end, cell_size, kernel] = ranges_[b];
+        const int begin = ranges_[b].begin, end = ranges_[b].end;
         for (int c = begin; c < end; ++c)
             mean[b] += state.v[c];
         mean[b] /= double(end - begin);

@@ -101,9 +101,11 @@ Stats stats_of(Assembly& assembly, const Stepper& stepper, const State& state) {
         stats.linear_momentum += momentum;
         stats.angular_momentum += x.cross(momentum);
     }
-    const Stepper::AffineMotion affine = stepper.affine_motion(state);
-    stats.kinetic_energy += affine.energy;
-    stats.angular_momentum += affine.angular_momentum;
+    for (const Stepper::BeyondCorners& beyond :
+         {stepper.affine_motion(state), stepper.node_motion(state)}) {
+        stats.kinetic_energy += beyond.energy;
+        stats.angular_momentum += beyond.angular_momentum;
+    }
     for (const HeldContact& contact : state.contacts)
         stats.elastic_energy += contact.energy;
     stats.collider_penetration =

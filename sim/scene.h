@@ -197,7 +197,7 @@ struct SolverOptions {
     std::optional<Kernel> kernel;  // empty: quadratic for material points, else linear
     Transfer transfer = Transfer::Flip;
     double pic_rate =
-        5;  // FLIP keeps exp(-pic_rate dt) of what the grid cannot see per step [1/s]
+        5;  // FLIP keeps exp(-pic_rate dt) of what a grid at rest cannot see per step [1/s]
     EnrichmentCriteria enrich;
     Steps steps = Steps::Implicit;
     Quadrature quadrature = Quadrature::OnePoint;

@@ -7,6 +7,7 @@
 #include "sim/stepper.h"
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 
 namespace sim {
@@ -16,7 +17,7 @@ namespace {
 constexpr double steps_per_frame = 10;  // where the shot gives no dt
 
 // Begins every checkpoint; counts up where what checkpoint() writes changes.
-constexpr char checkpoint_format[] = "state 2";
+constexpr char checkpoint_format[] = "state 3";
 
 void append(std::vector<std::byte>& bytes, const void* data, std::size_t size) {
     const std::size_t before = bytes.size();
@@ -50,15 +51,20 @@ struct Simulation::Impl {
             stepper.refresh(state);
     }
 
-    /// The arrays of the state, as a checkpoint holds them; those of BDF2 last.
+    /// The arrays of the state, as a checkpoint holds them, each after its size.
     std::vector<Field*> fields() {
-        std::vector<Field*> result = {
-            &state.x, &state.v, &state.inner_force, &state.inner_force_before};
-        if (!state.x_before.empty()) {
-            result.push_back(&state.x_before);
-            result.push_back(&state.v_before);
-        }
-        return result;
+        MovingGrid& grid = state.grid;
+        return {&state.x,
+                &state.v,
+                &state.inner_force,
+                &state.inner_force_before,
+                &state.x_before,
+                &state.v_before,
+                &grid.made_at,
+                &grid.x,
+                &grid.v,
+                &grid.x_before,
+                &grid.v_before};
     }
 
     Scene scene;
@@ -159,19 +165,24 @@ std::vector<std::byte> Simulation::checkpoint() const {
     std::vector<std::byte> bytes;
     append(bytes, checkpoint_format, sizeof checkpoint_format);
     const State& state = impl_->state;
-    const double has_history = state.x_before.empty() ? 0 : 1;
     const double n_contacts = static_cast<double>(state.contacts.size());
     for (const double number : {state.time,
                                 state.last_dt,
                                 state.dt_limit,
                                 state.quiet_drifts,
-                                has_history,
                                 n_contacts})
         append(bytes, &number, sizeof(double));
     append(bytes, state.contacts.data(), state.contacts.size() * sizeof(HeldContact));
     append(bytes, state.top_speed.data(), state.top_speed.size() * sizeof(double));
-    for (const Field* field : impl_->fields())
-        append(bytes, field->data(), field->size() * sizeof(Vec3p));
+    for (const Field* field : impl_->fields()) {
+        const std::uint64_t size = field->size();
+        append(bytes, &size, sizeof size);
+        append(bytes, field->data(), size * sizeof(Vec3p));
+    }
+    append(bytes, state.grid.free.data(), state.grid.free.size());
+    const std::uint64_t n_held = state.grid.held.size();
+    append(bytes, &n_held, sizeof n_held);
+    append(bytes, state.grid.held.data(), n_held * sizeof(int));
     for (const AssembledBody& body : impl_->assembly.bodies)
         if (body.enrichment)
             append(
@@ -198,24 +209,33 @@ void Simulation::restore(const std::vector<std::byte>& bytes) {
         std::memcpy(to, bytes.data() + next, size);
         next += size;
     };
-    double has_history = 0, n_contacts = 0;
+    double n_contacts = 0;
     for (double* number : {&state.time,
                            &state.last_dt,
                            &state.dt_limit,
                            &state.quiet_drifts,
-                           &has_history,
                            &n_contacts})
         take(number, sizeof(double));
     assets::check(n_contacts * sizeof(HeldContact) <= bytes.size(),
                   "checkpoint of another scene");
     state.contacts.resize(static_cast<std::size_t>(n_contacts));
     take(state.contacts.data(), state.contacts.size() * sizeof(HeldContact));
-    state.x_before.resize(has_history > 0 ? state.x.size() : 0);
     take(state.top_speed.data(), state.top_speed.size() * sizeof(double));
     for (Field* field : impl_->fields()) {
-        field->resize(state.x.size());
-        take(field->data(), field->size() * sizeof(Vec3p));
+        std::uint64_t size = 0;
+        take(&size, sizeof size);
+        assets::check(size <= bytes.size() / sizeof(Vec3p), "checkpoint of another scene");
+        field->resize(size);
+        take(field->data(), size * sizeof(Vec3p));
     }
+    assets::check(state.x.size() == impl_->assembly.mass.size(), "checkpoint of another scene");
+    state.grid.free.resize(state.grid.made_at.size());
+    take(state.grid.free.data(), state.grid.free.size());
+    std::uint64_t n_held = 0;
+    take(&n_held, sizeof n_held);
+    assets::check(n_held <= state.x.size(), "checkpoint of another scene");
+    state.grid.held.resize(n_held);
+    take(state.grid.held.data(), n_held * sizeof(int));
     for (AssembledBody& body : impl_->assembly.bodies) {
         if (!body.enrichment)
             continue;
@@ -229,6 +249,7 @@ void Simulation::restore(const std::vector<std::byte>& bytes) {
         take(points.J_plastic.data(), points.J_plastic.size() * sizeof(double));
     }
     assets::check(next == bytes.size(), "checkpoint of another scene");
+    impl_->stepper.restore_map(state);
     impl_->stepper.refresh(state);
 }
 

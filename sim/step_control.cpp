@@ -43,7 +43,7 @@ void Stepper::go_on(State& state, double end, double dt) {
     const double drift = std::min(stable, state.dt_limit);
     if (is_explicit) {
         prescribe(scene_, assembly_, state.time, state.time + drift, prescribed_);
-        choose_free_corners(state.x);
+        make_map(state, state.x);
     }
     const double longest = is_explicit ? longest_of_drifts(state, drift, dt) : drift;
     const double allowed =
@@ -114,9 +114,9 @@ void Stepper::halve(State& state, double failed, double stable) {
 
 double Stepper::longest_of_drifts(const State& state, double drift, double dt) const {
     // As long as the map may serve. What has touched lately may touch again: then all drifts of the step would be in vain.
-    double life = std::min({life_of_map * dt,
-                            limit_of_slaves(state.v, cells_under_map),
-                            state.quiet_drifts / quiet_per_drift * drift});
+    double life = std::min(life_of_map * dt, state.quiet_drifts / quiet_per_drift * drift);
+    if (!moves_grid_)
+        life = std::min(life, limit_of_slaves(state.v, cells_under_map));
     for (const Pin& pin : scene_.pins) {
         if (!is_in_force(pin, state.time))
             continue;

@@ -60,14 +60,23 @@ Stepper::Stepper(const Scene& scene, Assembly& assembly)
     if (scene.contact.mode == Contact::Mode::Grid)
         measured_.emplace(
             contact_surfaces(scene, assembly), friction_, contact_hardness(scene));
+    // What meets on the grid, also parts of one body, must have its nodes in common; what APIC and points remember belongs
+    // to places in it; and where corners turn free and slaved all the time, FLIP lets them keep what no map in between sees.
+    moves_grid_ = scene.contact.mode == Contact::Mode::Surface
+                  && scene.solver.transfer == Transfer::Flip && !scene.solver.enrich.strain
+                  && scene.solver.steps != Steps::Static && !has_points_;
     for (const AssembledBody& body : assembly.bodies)
-        ranges_.push_back({body.begin, body.end, body.cell_size, body.kernel});
+        ranges_.push_back({body.begin,
+                           body.end,
+                           body.cell_size,
+                           body.kernel,
+                           moves_grid_ ? &body.lattice.corners : nullptr});
 }
 
-void Stepper::begin_step(const State& state, double dt, Scheme scheme) {
+void Stepper::begin_step(State& state, double dt, Scheme scheme) {
     prescribe(scene_, assembly_, state.time, state.time + dt, prescribed_);
     start_scheme(state, dt, scheme);
-    choose_free_corners(potential_.step().x_n);
+    make_map(state, potential_.step().x_n);
     transfer_to_nodes(state, potential_.step().x_n, v_hat_, nullptr);
     expect_free_motion();
     prescribe_dofs(state, potential_.step().x_n, dt_hat_, dt);
@@ -85,17 +94,24 @@ void Stepper::begin_forces(const State& state, double dt) {
     colliders_.begin_step(state.x, state.top_speed, state.time, dt);
 }
 
-void Stepper::choose_free_corners(const Field& x) {
-    free_.assign(x.size(), 0);
-    for (AssembledBody& body : assembly_.bodies) {
-        if (body.method == Method::Fem || scene_.solver.steps == Steps::Static)
-            std::fill(free_.begin() + body.begin, free_.begin() + body.end, 1);
-        else if (body.method == Method::Enriched)
-            body.enrichment->update(body.lattice, &x[body.begin], &free_[body.begin]);
-    }
-    for (const int c : prescribed_.corners)
-        free_[c] = 1;
+void Stepper::make_map(State& state, const Field& x) {
+    if (moves_grid_)
+        return keep_map(state, x);
+    free_.resize(x.size());
+    for (std::size_t b = 0; b < ranges_.size(); ++b)
+        choose_free_corners(static_cast<int>(b), x);
     map_.rebuild(x, free_, ranges_);
+}
+
+void Stepper::choose_free_corners(int b, const Field& x) {
+    AssembledBody& body = assembly_.bodies[b];
+    const bool all = body.method == Method::Fem || scene_.solver.steps == Steps::Static;
+    std::fill(free_.begin() + body.begin, free_.begin() + body.end, all);
+    if (!all && body.enrichment)
+        body.enrichment->update(body.lattice, &x[body.begin], &free_[body.begin]);
+    for (const int c : prescribed_.corners)
+        if (c >= body.begin && c < body.end)
+            free_[c] = 1;
 }
 
 void Stepper::start_scheme(const State& state, double dt, Scheme scheme) {
@@ -103,17 +119,18 @@ void Stepper::start_scheme(const State& state, double dt, Scheme scheme) {
     step.x_n = state.x;
     v_hat_ = state.v;
     dt_hat_ = dt;
+    history_ = 0;
     if (scheme == Scheme::Bdf2) {
         // With w the ratio to the step before: x_{n+1} = x_n + w²/(1+2w) (x_n - x_{n-1}) + (1+w)/(1+2w) dt v_{n+1}.
         const bool is_first = state.x_before.empty();
         const double ratio = is_first ? 1 : dt / state.last_dt;
-        const double history = ratio * ratio / (1 + 2 * ratio);
+        history_ = ratio * ratio / (1 + 2 * ratio);
         for (std::size_t c = 0; c < state.x.size(); ++c) {
             const auto [dx, dv] = is_first ? motion_before(state, dt, static_cast<int>(c))
                                            : Motion{state.x[c] - state.x_before[c],
                                                     state.v[c] - state.v_before[c]};
-            step.x_n[c] += history * dx;
-            v_hat_[c] += history * dv;
+            step.x_n[c] += history_ * dx;
+            v_hat_[c] += history_ * dv;
         }
         dt_hat_ = dt * (1 + ratio) / (1 + 2 * ratio);
     }
@@ -169,10 +186,10 @@ void Stepper::prescribe_dofs(const State& state, const Field& x_n, double drift,
 }
 
 bool Stepper::is_held(int body) const {
-    const auto& [begin, end, cell_size, kernel] = ranges_[body];
+    const CornerMap::BodyRange& range = ranges_[body];
     return std::any_of(prescribed_.corners.begin(),
                        prescribed_.corners.end(),
-                       [&](int c) { return c >= begin && c < end; })
+                       [&](int c) { return c >= range.begin && c < range.end; })
            || std::any_of(
                pinned_nodes_.begin(), pinned_nodes_.end(), [&](const PinnedNode& node) {
                    return map_.dof_body()[node.dof] == body;
@@ -187,24 +204,29 @@ void Stepper::end_on_targets() {
 }
 
 void Stepper::commit(State& state, double dt) {
-    // Corner velocities: the new ones of the degrees of freedom, and for slaved corners what the grid could not see
+    // Corner velocities: the new ones of the degrees of freedom, and for slaved corners what a grid at rest could not see
     // of the old ones (FLIP).
-    const double damped = 1 + scene_.solver.damping * dt_hat_;
-    const Memory memory{1, 1 / damped, share_kept(dt)};  // forces act at the end
-    Field& seen = corner_;
-    map_.apply_to_slaves(q_n_, seen);
-    state.v = moved_;
-    for (const int c : map_.slave_corner())
-        state.v[c] -= memory.unseen * seen[c];
     way_.resize(map_.n_dofs());
     for (int i = map_.n_free(); i < map_.n_dofs(); ++i)
         way_[i] = dt_hat_ * q_moved_[i];
-    return_to_slaves(potential_.step().x_n, v_hat_, memory, gained_by_nodes(memory), state.v);
+    state.v = moved_;
+    if (!moves_grid_) {
+        const double damped = 1 + scene_.solver.damping * dt_hat_;
+        const Memory memory{1, 1 / damped, share_kept(dt)};  // forces act at the end
+        Field& seen = corner_;
+        map_.apply_to_slaves(q_n_, seen);
+        for (const int c : map_.slave_corner())
+            state.v[c] -= memory.unseen * seen[c];
+        return_to_slaves(
+            potential_.step().x_n, v_hat_, memory, gained_by_nodes(memory), state.v);
+    }
     std::swap(state.x, x_end_);
     end_step(state, dt);
 }
 
 void Stepper::end_step(State& state, double dt) {
+    if (moves_grid_)
+        end_grid(state);
     measure_speed(state);
     for (std::size_t b = 0; b < speed_.size(); ++b)
         state.top_speed[b] =
@@ -215,15 +237,15 @@ void Stepper::end_step(State& state, double dt) {
 
 void Stepper::measure_speed(const State& state) {
     speed_.clear();
-    for (const auto& [begin, end, cell_size, kernel] : ranges_) {
+    for (const CornerMap::BodyRange& range : ranges_) {
         double squared = 0;
-        for (int c = begin; c < end; ++c)
+        for (int c = range.begin; c < range.end; ++c)
             squared = std::max(squared, dot(state.v[c], state.v[c]));
         speed_.push_back(std::sqrt(squared));
     }
 }
 
-void Stepper::refresh(const State& state) {
+void Stepper::refresh(State& state) {
     begin_step(state, 0, Scheme::BackwardEuler);
     q_moved_ = q_ = q_n_;
     const bool is_explicit = scene_.solver.steps == Steps::Explicit;

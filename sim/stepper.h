@@ -37,7 +37,10 @@ class Stepper {
     void equilibrium(State& state, double time);
 
     /// Recomputes degrees of freedom and pin reactions for a state that no step has led to (start, restart).
-    void refresh(const State& state);
+    void refresh(State& state);
+
+    /// Before refresh() of a state that a checkpoint has kept: the map that its steps went by.
+    void restore_map(const State& state);
 
     int newton_iterations = 0, cg_iterations = 0, steps = 0;  // totals
 
@@ -50,14 +53,18 @@ class Stepper {
     /// Mass on the degrees of freedom of the last step [kg], and the forces of the pins on corners (#C) [N].
     double mass_on_dofs() const;
 
-    struct AffineMotion {
-        double energy = 0;               // Σ_c m/2 tr(C D Cᵀ) [J]
-        Vec3 angular_momentum{0, 0, 0};  // Σ_c m Σ_j e_j × (C D)_j [kg m²/s]
+    /// What bodies have beyond the motion of mass at their corners.
+    struct BeyondCorners {
+        double energy = 0;               // kinetic [J]
+        Vec3 angular_momentum{0, 0, 0};  // [kg m²/s]
     };
 
-    /// Of what APIC remembers of how the velocity changes around corners that are slaved, by the mean of D over all places: a
-    /// rotation keeps both while corners pass through their cells.
-    AffineMotion affine_motion(const State& state) const;
+    /// Σ_c m/2 tr(C D Cᵀ) and Σ_c m Σ_j e_j × (C D)_j, of what APIC remembers of how the velocity changes around corners that
+    /// are slaved, by the mean of D over all places: a rotation keeps both while corners pass through their cells.
+    BeyondCorners affine_motion(const State& state) const;
+
+    /// Of nodes that move along, where the mass of slaved corners is lumped.
+    BeyondCorners node_motion(const State& state) const;
 
     const Field& reaction() const { return reaction_; }
 
@@ -91,9 +98,10 @@ class Stepper {
 
     // stepper.cpp: what all steps share
     enum class Scheme { BackwardEuler, Bdf2 };
-    void begin_step(const State& state, double dt, Scheme scheme);
+    void begin_step(State& state, double dt, Scheme scheme);
     void begin_forces(const State& state, double dt);
-    void choose_free_corners(const Field& x);
+    void make_map(State& state, const Field& x);
+    void choose_free_corners(int body, const Field& x);
     void start_scheme(const State& state, double dt, Scheme scheme);
 
     struct Motion {
@@ -109,12 +117,22 @@ class Stepper {
     void end_step(State& state, double dt);
     void measure_speed(const State& state);
 
+    // moving_grid.cpp
+    void keep_map(State& state, const Field& x_hat);
+    bool has_other_pins(int body, const MovingGrid& grid) const;
+    void renew_map(State& state);
+    void place_nodes(const State& state, const Field& x_hat);
+    void add_lifted(const State& state, const Field& end, const Field& start, Field& nodes);
+    void end_grid(State& state);
+
     // transfer.cpp
     // Of corners at x that move with v, under the map there; `inner`: their gradient, if that goes over as well.
     void transfer_to_nodes(const State& state,
                            const Field& x,
                            const Field& v,
                            const Field* inner);
+    // Of that the masses of nodes and their velocities q_n_.
+    void lift(const State& state, const Field& x, const Field& v);
     void transfer_forces(const Field* inner);
     double share_kept(double dt) const;
 
@@ -159,7 +177,7 @@ class Stepper {
     // implicit_step.cpp
     bool try_implicit(State& state, double dt);
     bool try_bdf2(State& state, double dt);
-    bool solve_step(const State& state, double dt, Scheme scheme);
+    bool solve_step(State& state, double dt, Scheme scheme);
     // Solves again until is_settled(pass), from 1.
     bool minimize_with_contact(const NewtonOptions& options,
                                const std::function<bool(int)>& is_settled);
@@ -222,8 +240,11 @@ class Stepper {
     NewtonSummary summary_;  // of the last solve
     Prescribed prescribed_;
     std::vector<char> free_;            // (#C)
+    bool moves_grid_ = false;           // whether the grid is a MovingGrid
+    Field node_v_hat_;                  // (#nodes) v^ of its nodes [m/s]
     std::vector<double> inverse_mass_;  // (#dofs) 0 where there is none [1/kg]
     double dt_hat_ = 0;                 // dt^ of the scheme [s]
+    double history_ = 0;                // share of the last step's change in x^ and v^
     Field v_hat_;                       // v^ of the scheme (#C) [m/s]
     std::vector<double> dof_mass_;      // (#dofs) [kg]
     Field q_n_, q_;                     // (#dofs) [m/s]

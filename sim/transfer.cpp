@@ -2,6 +2,7 @@
 #include "sim/base/parallel.h"
 #include "sim/stepper.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sim {
@@ -11,7 +12,8 @@ namespace {
 constexpr int chunk = 8192;
 constexpr double thin =
     0.01;  // what does not turn about its own axis: a body no thicker than that, in cells
-constexpr int spin_passes = 3;  // each leaves a share as large as the angle that a step turns by
+constexpr int spin_passes =
+    3;  // each leaves a share as large as the angle that a step turns by
 
 }  // namespace
 
@@ -22,7 +24,23 @@ void Stepper::transfer_to_nodes(const State& state,
     // Mass and momentum of slaves to nodes: M = Tᵀ m, M q_n = Tᵀ (m v); free corners keep their own. Lumped means over the
     // corners around a node see a rotation too slow where corners lie on one side of it, so the body's rigid motion goes
     // over by its value at the node and only the rest by means: rigid motion is exact, and so is momentum, as
-    // Σ_i w_ic x_i = x_c. APIC carries rotation by itself.
+    // Σ_i w_ic x_i = x_c. APIC carries rotation by itself, and nodes that move along have kept what they had.
+    if (moves_grid_) {
+        q_n_.resize(map_.n_dofs());
+        std::copy(node_v_hat_.begin(), node_v_hat_.end(), q_n_.begin() + map_.n_free());
+        shift_.assign(ranges_.size(), Vec3p{});
+    } else {
+        lift(state, x, v);
+    }
+    for (int k = 0; k < map_.n_free(); ++k) {
+        const int c = map_.free_corner()[k];
+        dof_mass_[k] = assembly_.mass[c][0];
+        inverse_mass_[k] = assembly_.inverse_mass[c];
+    }
+    transfer_forces(inner);
+}
+
+void Stepper::lift(const State& state, const Field& x, const Field& v) {
     const int n = map_.n_dofs();
     const bool is_affine = scene_.solver.transfer == Transfer::Apic;
     corner_.resize(state.x.size());
@@ -62,12 +80,6 @@ void Stepper::transfer_to_nodes(const State& state,
         if (!is_affine || !(mass > 0))
             q_n_[i] += rigid_[map_.dof_body()[i]].at(map_.dof_position()[i]);
     }
-    for (int k = 0; k < map_.n_free(); ++k) {
-        const int c = map_.free_corner()[k];
-        dof_mass_[k] = assembly_.mass[c][0];
-        inverse_mass_[k] = assembly_.inverse_mass[c];
-    }
-    transfer_forces(inner);
 }
 
 void Stepper::transfer_forces(const Field* inner) {

@@ -1,4 +1,4 @@
-// The map T from degrees of freedom to corners, v_corner = T q, rebuilt every step, and its gradients. [Z18 §4, §5.1]
+// The map T from degrees of freedom to corners, v_corner = T q, and its gradients. [Z18 §4, §5.1]
 #pragma once
 
 #include "sim/base/field.h"
@@ -10,6 +10,8 @@
 #include <vector>
 
 namespace sim {
+
+struct CellParts;
 
 /// ∂v/∂x at a point: column j is ∂v/∂x_j.   [1/s]
 struct Gradient {
@@ -26,17 +28,23 @@ struct Gradient {
 /// same for any number of threads.
 class CornerMap {
   public:
-    /// The corners [begin, end) of one body, its cell size h [m] and its kernel.
+    /// The corners [begin, end) of one body, its cell size h [m] and its kernel. Where the corners of its domains (counted
+    /// from `begin`) are given, parts that they do not connect share no node (CellParts); else all that is near does.
     struct BodyRange {
         int begin = 0, end = 0;
         double cell_size = 0;
         Kernel kernel = Kernel::Linear;
+        const std::vector<std::array<int, 8>>* domains = nullptr;
     };
 
-    /// `free` (#C): whether a corner is free. Throws FlownApart.
+    /// `free` (#C): whether a corner is free. What changes in one body moves the numbers of another's nodes, but keeps their
+    /// order. Throws FlownApart.
     void rebuild(const Field& corners,
                  const std::vector<char>& free,
                  const std::vector<BodyRange>& bodies);
+
+    /// Moves degrees of freedom: free ones to their corners, nodes to `nodes`.   corners (#C), nodes (#nodes) [m]
+    void place(const Field& corners, const Field& nodes);
 
     int n_dofs() const { return n_free() + n_nodes_; }
 
@@ -118,6 +126,13 @@ class CornerMap {
     /// All slaves of a body; `chunk` is the number of chunks.
     Slaves slaves_of(int body) const;
 
+    /// The nodes of a body, among all of them: degrees of freedom n_free() + begin and on.
+    struct Nodes {
+        int begin = 0, end = 0;
+    };
+
+    Nodes nodes_of(int body) const { return {parts_[body].first_node, parts_[body].last_node}; }
+
     /// The corner of each slave.
     const std::vector<int>& slave_corner() const { return slave_corner_; }
 
@@ -154,9 +169,14 @@ class CornerMap {
     // corner_map_rebuild.cpp
     void rebuild_body(const Field& corners, const BodyRange& body, int index);
     Box box_of_slaves(const Field& corners, const BodyRange& body, double shift);
-    void sort_slaves(const Field& corners, const BodyRange& body, const Box& box, double shift);
+    // By the cells of the box, or by parts of them.
+    void sort_slaves(const Field& corners,
+                     const BodyRange& body,
+                     const Box& box,
+                     double shift,
+                     const CellParts* parts);
     void group_occupied_cells();
-    void number_nodes(const Box& box, int n, Part& part);
+    void number_nodes(const Box& box, int n, const CellParts* parts, Part& part);
     void keep_trilinear_weights(Part& part);
 
     // corner_map.cpp

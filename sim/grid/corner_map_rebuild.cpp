@@ -1,12 +1,14 @@
 // How slaved corners are grouped and nodes are numbered.
 #include "sim/base/cell_box.h"
 #include "sim/base/floor.h"
+#include "sim/grid/cell_parts.h"
 #include "sim/grid/corner_map.h"
 #include "sim/grid/kernel.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace sim {
@@ -62,6 +64,12 @@ void CornerMap::rebuild(const Field& corners,
         rebuild_body(corners, bodies[b], static_cast<int>(b));
 }
 
+void CornerMap::place(const Field& corners, const Field& nodes) {
+    for (int k = 0; k < n_free(); ++k)
+        dof_position_[k] = corners[free_corner_[k]];
+    std::copy(nodes.begin(), nodes.end(), dof_position_.begin() + n_free());
+}
+
 void CornerMap::rebuild_body(const Field& corners, const BodyRange& body, int index) {
     Part part;
     part.kernel = body.kernel;
@@ -75,9 +83,13 @@ void CornerMap::rebuild_body(const Field& corners, const BodyRange& body, int in
 
     const Box box = box_of_slaves(corners, body, shift);
     if (!slave_order_.empty()) {
-        sort_slaves(corners, body, box, shift);
+        std::optional<CellParts> parts;
+        if (body.domains != nullptr)
+            parts = cut_cells(corners, body, n, shift);
+        const CellParts* cut = parts ? &*parts : nullptr;
+        sort_slaves(corners, body, box, shift, cut);
         part.last_group = static_cast<int>(groups_.size());
-        number_nodes(box, n, part);
+        number_nodes(box, n, cut, part);
         part.last_node = n_nodes_;
         if (body.kernel == Kernel::Linear)
             keep_trilinear_weights(part);
@@ -117,17 +129,21 @@ CornerMap::Box CornerMap::box_of_slaves(const Field& corners,
 void CornerMap::sort_slaves(const Field& corners,
                             const BodyRange& body,
                             const Box& box,
-                            double shift) {
+                            double shift,
+                            const CellParts* parts) {
     // Counting sort by the lowest node of the stencil.
     const double inverse_size = 1 / body.cell_size;
-    const std::size_t n_cells = box.count();
+    const std::size_t n_cells = parts != nullptr ? parts->lowest.size() : box.count();
     cell_slave_.resize(std::max(cell_slave_.size(), n_cells));
     occupied_.resize(std::max(occupied_.size(), n_cells / word + 1));
     cell_of_slave_.resize(slave_order_.size());
     for (std::size_t k = 0; k < slave_order_.size(); ++k) {
         const Vec3p& x = corners[slave_order_[k]];
         const Vec3p local = floor_of(x * inverse_size - in_all_axes(shift)) - box.low;
-        const int cell = int(local[0]) + box.n[0] * (int(local[1]) + box.n[1] * int(local[2]));
+        const int cell =
+            parts != nullptr
+                ? parts->part_of_corner[slave_order_[k] - body.begin]
+                : int(local[0]) + box.n[0] * (int(local[1]) + box.n[1] * int(local[2]));
         cell_of_slave_[k] = cell;
         ++cell_slave_[cell];
         occupied_[cell / word] |= std::uint64_t{1} << cell % word;
@@ -142,7 +158,10 @@ void CornerMap::sort_slaves(const Field& corners,
         slave_of_corner_[slave_order_[k]] = slave;
         // Where the product is not rounded before the difference (a fused instruction) a point on a node may come out a
         // rounding below it: its weights would be negative, and a node's mass the difference of such.
-        const Vec3p least = in_all_axes(shift), local = scaled - floor_of(scaled - least);
+        const Vec3p least = in_all_axes(shift);
+        const Vec3p lowest = parts != nullptr ? parts->lowest_of(slave_order_[k] - body.begin)
+                                              : floor_of(scaled - least);
+        const Vec3p local = scaled - lowest;
         slave_local_[slave] = local > least ? local : least;
     }
     for (const int cell : base_)
@@ -178,21 +197,28 @@ void CornerMap::keep_trilinear_weights(Part& part) {
     }
 }
 
-void CornerMap::number_nodes(const Box& box, int n, Part& part) {
+void CornerMap::number_nodes(const Box& box, int n, const CellParts* parts, Part& part) {
     const int per_group = n * n * n;
     const std::array<int, 3> size = {box.n[0] + n - 1, box.n[1] + n - 1, box.n[2] + n - 1};
-    node_of_.resize(
-        std::max(node_of_.size(), static_cast<std::size_t>(size[0]) * size[1] * size[2]), -1);
+    const std::size_t n_places = parts != nullptr
+                                     ? parts->n_copies
+                                     : static_cast<std::size_t>(size[0]) * size[1] * size[2];
+    node_of_.resize(std::max(node_of_.size(), n_places), -1);
     placed_.clear();
     group_nodes_.resize(part.first_entry + base_.size() * per_group);
     int* group_node = group_nodes_.data() + part.first_entry;
+    const std::array<int, 3> origin = {int(box.low[0]), int(box.low[1]), int(box.low[2])};
     for (const int base : base_) {
-        const int i = base % box.n[0], j = base / box.n[0] % box.n[1],
-                  l = base / (box.n[0] * box.n[1]);
-        for (int z = l; z < l + n; ++z)
-            for (int y = j; y < j + n; ++y)
-                for (int x = i; x < i + n; ++x) {
-                    const int place = x + size[0] * (y + size[1] * z);
+        std::array<int, 3> low = {
+            base % box.n[0], base / box.n[0] % box.n[1], base / (box.n[0] * box.n[1])};
+        for (int k = 0; k < 3 && parts != nullptr; ++k)
+            low[k] = parts->lowest[base][k] - origin[k];
+        const int* copy = parts != nullptr ? &parts->copies[base * per_group] : nullptr;
+        for (int z = low[2]; z < low[2] + n; ++z)
+            for (int y = low[1]; y < low[1] + n; ++y)
+                for (int x = low[0]; x < low[0] + n; ++x) {
+                    const int place =
+                        copy != nullptr ? *copy++ : x + size[0] * (y + size[1] * z);
                     int& node = node_of_[place];
                     if (node < 0) {
                         node = n_nodes_++;

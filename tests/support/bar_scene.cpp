@@ -37,6 +37,7 @@ sim::Scene bar_scene(const BarOptions& options) {
 
     sim::Scene scene;
     scene.solver = options.solver;
+    scene.contact.mode = options.contact;
     scene.bodies.push_back(body);
     scene.forces.push_back(sim::Gravity{{0, 0, -10}});
     scene.pins.push_back({"wall", "bar", {sim::Selector::HalfSpace{{0, 0, 0}, {1, 0, 0}}, {}}, sim::Pin::Fixed{}});

@@ -12,6 +12,7 @@ struct BarOptions {
     double end_modulus = 1e6, middle_modulus = 1e5;  // [Pa]
     sim::Model model = sim::Model::NeoHookean;
     sim::SolverOptions solver;
+    sim::Contact::Mode contact = sim::Contact::Mode::Surface;
 };
 
 /// Clamped at x = 0, gravity 10 m/s² along -z, a probe "tip" at the centre of the end face.

@@ -35,7 +35,8 @@ const Named methods[] = {{"fem", sim::Method::Fem},
 sim::Scene disc(sim::Method method,
                 const Vec3& velocity,
                 const Vec3& spin,
-                sim::Steps steps = sim::Steps::Implicit) {
+                sim::Steps steps = sim::Steps::Implicit,
+                sim::Contact::Mode contact = sim::Contact::Mode::Surface) {
     sim::Body body;
     body.name = "disc";
     body.domain_size = 0.1;
@@ -58,6 +59,7 @@ sim::Scene disc(sim::Method method,
     sim::Scene scene;
     scene.solver.method = method;
     scene.solver.steps = steps;
+    scene.contact.mode = contact;
     scene.solver.dt = 1e-3;
     scene.solver.enrich.thin = false;  // else all of a disc one domain thick is free
     scene.bodies.push_back(body);
@@ -73,9 +75,10 @@ double total_energy(const sim::Stats& stats) {
 TEST_CASE("free flight keeps mass and momentum, and creates no elastic energy",
           "[conservation]") {
     const Scheme scheme = GENERATE(from_range(schemes));
+    const auto contact = GENERATE(sim::Contact::Mode::Surface, sim::Contact::Mode::Grid);
     for (const auto& [name, method] : methods) {
-        INFO(name << ", " << scheme.name);
-        sim::Simulation simulation(disc(method, {3, 1, 0.5}, {0, 0, 0}, scheme.steps),
+        INFO(name << ", " << scheme.name << ", contact " << int(contact));
+        sim::Simulation simulation(disc(method, {3, 1, 0.5}, {0, 0, 0}, scheme.steps, contact),
                                    frame_time);
         const sim::Stats start = simulation.stats();
         REQUIRE(start.kinetic_energy > 1);
@@ -96,10 +99,11 @@ TEST_CASE("a spinning disc keeps its momentum, gains no energy, and loses little
     // Backward Euler takes (w dt)² of the angular momentum per step: 3.9% in a revolution of 1000 steps.
     const double backward_euler = std::pow(1 - std::pow(2 * pi * 1e-3, 2), 1000);
     const Scheme scheme = GENERATE(from_range(schemes));
+    const auto contact = GENERATE(sim::Contact::Mode::Surface, sim::Contact::Mode::Grid);
     for (const auto& [name, method] : methods) {
-        INFO(name << ", " << scheme.name);
-        sim::Simulation simulation(disc(method, {0.3, 0, 0}, {0, 0, 2 * pi}, scheme.steps),
-                                   frame_time);
+        INFO(name << ", " << scheme.name << ", contact " << int(contact));
+        sim::Simulation simulation(
+            disc(method, {0.3, 0, 0}, {0, 0, 2 * pi}, scheme.steps, contact), frame_time);
         const sim::Stats start = simulation.stats();
         simulation.advance_to(1);  // one revolution
         const sim::Stats now = simulation.stats();
@@ -137,9 +141,13 @@ TEST_CASE("a bar that spins in the air keeps its angular momentum, and never gai
     // 20 rad/s stretch it and let it swing, about no principal axis: ten turns, in which its corners pass through many cells.
     const double period = 1 / 3.541;  // C1-H [s]
     const Scheme scheme = GENERATE(from_range(std::vector(schemes.begin() + 1, schemes.end())));
+    const auto contact = GENERATE(sim::Contact::Mode::Surface, sim::Contact::Mode::Grid);
+    const bool is_bdf2 = scheme.steps == sim::Steps::Bdf2,
+               is_at_rest = contact == sim::Contact::Mode::Grid;
     for (const auto& [name, method] : methods) {
-        INFO(name << ", " << scheme.name);
+        INFO(name << ", " << scheme.name << (is_at_rest ? ", grid at rest" : ""));
         tests::BarOptions options;
+        options.contact = contact;
         options.n_domains = {18, 6, 6};
         options.segment_ends = {6, 12};
         if (method != sim::Method::Enriched)
@@ -157,12 +165,16 @@ TEST_CASE("a bar that spins in the air keeps its angular momentum, and never gai
         for (int k = 1; k <= 10; ++k) {
             simulation.advance_to(period * k);
             const double now = total_energy(simulation.stats());
-            CHECK(now < before + 1e-4 * total_energy(start));
+            // BDF2 is of second order in how the swings carry it, too.
+            CHECK(now < before + (is_bdf2 ? 2e-4 : 1e-4) * total_energy(start));
+            if (!is_bdf2 && !is_at_rest)
+                CHECK(now > total_energy(start) * (1 - 1e-3));
             before = now;
         }
         const Vec3 lost = simulation.stats().angular_momentum - start.angular_momentum;
-        CHECK(lost.norm() / start.angular_momentum.norm()
-              < (scheme.steps == sim::Steps::Bdf2 ? 5e-3 : 1e-6));
+        CHECK(lost.norm() / start.angular_momentum.norm() < (is_bdf2      ? 5e-3
+                                                             : is_at_rest ? 1e-6
+                                                                          : 1e-12));
     }
 }
 
@@ -204,25 +216,27 @@ TEST_CASE("the total energy of a swinging bar never rises", "[conservation]") {
 
 namespace {
 
-/// Change of a bar's energy over ten oscillations, of what swings.
+/// The largest change of a bar's energy in ten oscillations, looked at every quarter, of what swings.
 double ten_oscillations(tests::BarOptions options) {
     const double period = 1 / 3.541;  // C1-H [s]
     options.solver.dt = period / 200;
     sim::Simulation simulation(tests::bar_scene(options), frame_time);
     const double start = total_energy(simulation.stats());
-    double swing = 0;
+    double swing = 0, change = 0;
     for (int k = 1; k <= 40; ++k) {
         simulation.advance_to(period * k / 4);
         swing = std::max(swing, simulation.stats().kinetic_energy);
+        const double now = total_energy(simulation.stats()) - start;
+        change = std::abs(now) > std::abs(change) ? now : change;
     }
-    return (total_energy(simulation.stats()) - start) / swing;
+    return change / swing;
 }
 
 }  // namespace
 
 TEST_CASE("ten free oscillations of a bar at 200 steps a period keep the energy within 1%",
           "[conservation]") {
-    // By fem. What slaved corners hand to the grid and back costs some, backward Euler much: both stated, not promised.
+    // Backward Euler costs much: stated, not promised.
     const Scheme scheme = GENERATE(from_range(schemes));
     for (const auto& [name, method] : methods) {
         tests::BarOptions options;
@@ -236,10 +250,30 @@ TEST_CASE("ten free oscillations of a bar at 200 steps a period keep the energy 
         WARN(name << ", " << scheme.name << " changes the energy by " << 100 * change << "%");
         if (scheme.steps == sim::Steps::Implicit)
             CHECK((change < -0.01 && change > -1.5));
-        else if (method == sim::Method::Fem)
-            CHECK(std::abs(change) < 0.01);
         else
-            CHECK((change < 0 && change > -0.2));
+            CHECK(std::abs(change) < 0.01);
+    }
+}
+
+TEST_CASE("where the grid is at rest, a bar's ten oscillations lose energy, and gain none",
+          "[conservation]") {
+    // What slaved corners hand to the grid and back costs some: stated, not promised.
+    const sim::Steps steps = GENERATE(sim::Steps::Bdf2, sim::Steps::Explicit);
+    for (const auto& [name, method] : methods) {
+        if (method == sim::Method::Fem)
+            continue;
+        tests::BarOptions options;
+        options.n_domains = {18, 6, 6};
+        options.segment_ends = {6, 12};
+        if (method != sim::Method::Enriched)
+            options.middle_modulus = options.end_modulus;
+        options.solver.method = method;
+        options.solver.steps = steps;
+        options.contact = sim::Contact::Mode::Grid;
+        const double change = ten_oscillations(options);
+        WARN(name << ", " << int(steps) << " changes the energy by " << 100 * change
+                  << "% on a grid at rest");
+        CHECK((change < 0 && change > -0.2));
     }
 }
 

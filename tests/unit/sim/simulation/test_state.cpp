@@ -2,6 +2,7 @@
 #include "sim/simulation.h"
 #include "tests/support/bar_scene.h"
 #include "tests/support/soft_block.h"
+#include "tests/support/squashed_columns.h"
 #include "tests/support/threads.h"
 
 #include <catch2/catch.hpp>
@@ -103,6 +104,18 @@ TEST_CASE("a restored checkpoint goes on to the same bits") {
         CHECK(goes_on);
         CHECK(way_of_probe(first, whole) > 1e-3);
     }
+}
+
+TEST_CASE(
+    "a restored checkpoint of bodies whose corners are freed, held and let go goes on to the "
+    "same bits") {
+    sim::Scene scene = tests::squashed_columns(
+        2, GENERATE(sim::Steps::Implicit, sim::Steps::Bdf2, sim::Steps::Explicit));
+    scene.solver.enrich.strain = GENERATE(true, false);
+    scene.pins[0].until = 0.06;
+    sim::Simulation whole(scene, frame_time);
+    check_resumes(whole, scene, 0.01, 12);
+    CHECK(way_of_probe(sim::Simulation(scene, frame_time), whole) > 0.01);
 }
 
 TEST_CASE("a restored checkpoint of points goes on to the same bits") {
