@@ -35,6 +35,7 @@ TEST_CASE("letting go of one body leaves the motion of another as it is") {
     // Explicit steps of one body depend on the other by their length alone.
     sim::Scene both = tests::squashed_columns(2, sim::Steps::Explicit);
     both.solver.method = sim::Method::Domains;
+    both.solver.enrich.strain = false;  // else the grid is at rest
     both.bodies[0].velocity = {1, 0, 0};
     both.pins[0].until = 0.05;
     sim::Scene alone = both;
