@@ -1,38 +1,15 @@
 #include "assets/mesh/joined_corners.h"
 
+#include "assets/base/disjoint_sets.h"
 #include "assets/mesh/edges.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace assets {
-namespace {
-
-// A forest of disjoint sets. The lowest corner is the root, so that nothing depends on the order of joins.
-class CornerSets {
-  public:
-    explicit CornerSets(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-    int root(int corner) {
-        while (parent_[corner] != corner)
-            corner = parent_[corner] = parent_[parent_[corner]];
-        return corner;
-    }
-
-    void join(int a, int b) {
-        const auto [low, high] = std::minmax({root(a), root(b)});
-        parent_[high] = low;
-    }
-
-  private:
-    std::vector<int> parent_;
-};
-
-}  // namespace
 
 std::vector<int> joined_corners(const std::vector<std::array<int, 3>>& triangles,
                                 const std::function<bool(int, int)>& is_smooth) {
-    CornerSets sets(3 * triangles.size());
+    DisjointSets sets(3 * triangles.size());
     const auto corner_at = [&](int t, int vertex) {
         const auto& triangle = triangles[t];
         return 3 * t

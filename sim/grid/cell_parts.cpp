@@ -1,39 +1,19 @@
 #include "sim/grid/cell_parts.h"
 
+#include "assets/base/disjoint_sets.h"
 #include "sim/base/cell_box.h"
 #include "sim/base/floor.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 namespace sim {
 
 namespace {
 
+using assets::DisjointSets;
 using Cell = std::array<int, 3>;
 using Domains = std::vector<std::array<int, 8>>;
-
-/// Sets that grow together; the least member stands for all.
-class Sets {
-  public:
-    explicit Sets(int n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-    int of(int member) {
-        while (parent_[member] != member)
-            member = parent_[member] = parent_[parent_[member]];
-        return member;
-    }
-
-    void unite(int a, int b) {
-        a = of(a);
-        b = of(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<int> parent_;
-};
 
 std::vector<Cell> cells_of(const Field& corners,
                            const CornerMap::BodyRange& body,
@@ -53,23 +33,23 @@ std::vector<Cell> cells_of(const Field& corners,
     return cells;
 }
 
-Sets connect_within(const std::vector<Cell>& cells, const Domains& domains) {
-    Sets sets(static_cast<int>(cells.size()));
+DisjointSets connect_within(const std::vector<Cell>& cells, const Domains& domains) {
+    DisjointSets sets(static_cast<int>(cells.size()));
     for (const std::array<int, 8>& corners : domains)
         for (int a = 1; a < 8; ++a)
             for (int b = 0; b < a; ++b)
                 if (cells[corners[a]] == cells[corners[b]]) {
-                    sets.unite(corners[a], corners[b]);
+                    sets.join(corners[a], corners[b]);
                     break;  // what is in the same cell with b is so already
                 }
     return sets;
 }
 
-void number_parts(const std::vector<Cell>& cells, Sets& sets, CellParts& result) {
+void number_parts(const std::vector<Cell>& cells, DisjointSets& sets, CellParts& result) {
     const int n = static_cast<int>(cells.size());
     std::vector<int> first;  // corner of each part
     for (int c = 0; c < n; ++c)
-        if (sets.of(c) == c)
+        if (sets.root(c) == c)
             first.push_back(c);
     std::sort(first.begin(), first.end(), [&](int a, int b) {
         const Cell &u = cells[a], &v = cells[b];
@@ -81,7 +61,7 @@ void number_parts(const std::vector<Cell>& cells, Sets& sets, CellParts& result)
         result.lowest.push_back(cells[c]);
     }
     for (int c = 0; c < n; ++c)
-        result.part_of_corner[c] = result.part_of_corner[sets.of(c)];
+        result.part_of_corner[c] = result.part_of_corner[sets.root(c)];
 }
 
 /// For each part those after it that a domain reaches as well.
@@ -127,15 +107,15 @@ void number_copies(const Entry* begin,
                    int per_part,
                    CellParts& result) {
     const int n = static_cast<int>(end - begin);
-    Sets sets(n);
+    DisjointSets sets(n);
     for (int k = 0; k < n; ++k)
         for (const int q : neighbours[begin[k].part])
             for (int l = k + 1; l < n; ++l)
                 if (begin[l].part == q)
-                    sets.unite(k, l);
+                    sets.join(k, l);
     std::vector<int> number(n);
     for (int k = 0; k < n; ++k) {
-        number[k] = sets.of(k) == k ? result.n_copies++ : number[sets.of(k)];
+        number[k] = sets.root(k) == k ? result.n_copies++ : number[sets.root(k)];
         result.copies[begin[k].part * per_part + begin[k].index] = number[k];
     }
 }
@@ -148,7 +128,7 @@ CellParts cut_cells(const Field& corners,
                     double shift) {
     CellParts result;
     const std::vector<Cell> cells = cells_of(corners, body, shift);
-    Sets sets = connect_within(cells, *body.domains);
+    DisjointSets sets = connect_within(cells, *body.domains);
     number_parts(cells, sets, result);
 
     const int per_part = n * n * n;
