@@ -72,13 +72,12 @@ constexpr int linear_mode[3] = {1, 2, 4};
 constexpr int bilinear_mode[3] = {3, 5, 6};
 constexpr int trilinear_mode = 7;
 
-ALWAYS_INLINE void load_modes(const Brick& brick,
+ALWAYS_INLINE void load_modes(const std::array<int, 4>& row,
                               const BrickFields& fields,
-                              int slot,
                               Eight h[3]) {
     times<3>([&](auto i) INLINED {
         times<8>([&](auto a)
-                     INLINED { h[i].v[a] = load_lanes(fields.in[i] + slot + brick.step[a]); });
+                     INLINED { h[i].v[a] = load_lanes(fields.in[i] + row[a / 2] + (a & 1)); });
         to_modes(h[i]);
     });
 }
@@ -88,16 +87,14 @@ ALWAYS_INLINE double* corner_sums(const BrickFields& fields, int i, int a) {
     return a & 1 ? fields.out_right[i] : fields.out[i];
 }
 
-ALWAYS_INLINE void add_modes(const Brick& brick,
+ALWAYS_INLINE void add_modes(const std::array<int, 4>& row,
                              const BrickFields& fields,
-                             int slot,
                              Eight g[3]) {
     times<3>([&](auto i) INLINED {
         g[i].v[0] = Lanes{};
         from_modes(g[i]);
-        times<8>([&](auto a) INLINED {
-            add_to(corner_sums(fields, i, a) + slot + brick.step[a & 6], g[i].v[a]);
-        });
+        times<8>([&](auto a)
+                     INLINED { add_to(corner_sums(fields, i, a) + row[a / 2], g[i].v[a]); });
     });
 }
 
@@ -190,7 +187,7 @@ double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fi
     Lanes energy{};
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
         Eight h[3], g[3];
-        load_modes(brick, fields, brick.batch[b], h);
+        load_modes(brick.batch[b].row, fields, h);
         const Matrix3<Lanes> F = gradient_of_modes(h, brick.volume[b], edge);
 
         Lanes psi{};
@@ -202,7 +199,7 @@ double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fi
         energy += brick.volume[b] * psi + hourglass(brick.hourglass[b], h, g);
         const Lanes scale = brick.volume[b] * (1 / (4 * edge));
         times<9>([&](auto k) INLINED { g[k % 3].v[linear_mode[k / 3]] = scale * P.m[k]; });
-        add_modes(brick, fields, brick.batch[b], g);
+        add_modes(brick.batch[b].row, fields, g);
     }
     double sum = 0;
     for (int l = 0; l < lane_count; ++l)
@@ -214,7 +211,7 @@ SUPPLE_LANES
 void linearize_brick(Brick& brick, double edge, const BrickFields& fields) {
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
         Eight h[3];
-        load_modes(brick, fields, brick.batch[b], h);
+        load_modes(brick.batch[b].row, fields, h);
         const Matrix3<Lanes> F = gradient_of_modes(h, brick.volume[b], edge);
         FloatLanes* A = &brick.stiffness[45 * b];
         take_stiffness<NeoHookean>(brick, b, Model::NeoHookean, F, A);
@@ -229,7 +226,7 @@ void add_brick_product(const Brick& brick, double edge, const BrickFields& field
         // 1/(4s) from the modes to F, and 1/(4s) back
         const Lanes scale = brick.weight[b] * (1 / (16 * edge * edge));
         Eight h[3], g[3];
-        load_modes(brick, fields, brick.batch[b], h);
+        load_modes(brick.batch[b].row, fields, h);
         Matrix3<Lanes> dF, dP{};
         times<9>([&](auto k) INLINED { dF.m[k] = scale * h[k % 3].v[linear_mode[k / 3]]; });
         const FloatLanes* A = &brick.stiffness[45 * b];
@@ -247,7 +244,7 @@ void add_brick_product(const Brick& brick, double edge, const BrickFields& field
         });
         hourglass(brick.hourglass[b], h, g);
         times<9>([&](auto k) INLINED { g[k % 3].v[linear_mode[k / 3]] = dP.m[k]; });
-        add_modes(brick, fields, brick.batch[b], g);
+        add_modes(brick.batch[b].row, fields, g);
     }
 }
 
@@ -267,7 +264,7 @@ void add_brick_diagonal(const Brick& brick, double edge, const BrickFields& fiel
                                               Lanes)
                 + 3.5 * brick.hourglass[b];
             times<8>([&](auto a) INLINED {
-                add_to(corner_sums(fields, i, a) + brick.batch[b] + brick.step[a & 6], sum);
+                add_to(corner_sums(fields, i, a) + brick.batch[b].row[a / 2], sum);
             });
         });
     }
@@ -275,7 +272,7 @@ void add_brick_diagonal(const Brick& brick, double edge, const BrickFields& fiel
 
 Lanes brick_J(const Brick& brick, int b, double edge, const BrickFields& fields) {
     Eight h[3];
-    load_modes(brick, fields, brick.batch[b], h);
+    load_modes(brick.batch[b].row, fields, h);
     return determinant(gradient_of_modes(h, brick.volume[b], edge));
 }
 

@@ -9,26 +9,30 @@
 
 namespace sim {
 
-/// A brick is a dense box of lattice cells with its own copy of the corners. lane_count slots in a row, slot o being the
-/// domain whose lowest corner has local index o, form a batch: their corners a lie at o + step[a], so every access is one
-/// contiguous vector and no index is stored. Slots without a domain, row ends among them, have zero volume and moduli and
-/// take part as undeformed.
+/// Domains that follow each other in all four rows of their corners: corners of lane l are l places further than those of the
+/// first, so that every access is one contiguous vector. Slots without a domain, row ends among them, have zero volume and
+/// moduli and take part as undeformed.
+struct Batch {
+    std::array<int, 4>
+        row;  // places of corners 0, 2, 4 and 6 of the first lane; 1, 3, 5 and 7 follow
+    std::array<int, lane_count> domain;  // -1 where none
+};
+
+/// The domains of a box of cells, with their own copy of the corners in rows (BrickLayout).
 ///
-/// Rows of slots run along the lattice's x, y or z, the brick's axes being the lattice's in turn: a rotation, which no
-/// isotropic law sees. F and what follows from it are in the brick's axes.
+/// Rows run along the lattice's x, y or z, the brick's axes being the lattice's in turn: a rotation, which no isotropic law sees.
+/// F and what follows from it are in the brick's axes.
 struct Brick {
-    int n_local = 0;             // local corners, padded: whole batches that stay inside
-    int first_local = 0;         // of this brick among those of all bricks
-    std::array<int, 8> step{};   // local index offset of corner a
-    std::vector<int> batch;      // first slot of each batch that holds a domain
-    std::vector<int> domain;     // (lane_count #batches) domain of each slot, -1 where none
+    int n_local = 0;      // local corners, padded: whole batches that stay inside
+    int first_local = 0;  // of this brick among those of all bricks
+    std::vector<Batch> batch;
     std::vector<unsigned> laws;  // (#batches) bit m set where a slot has model m
 
     std::vector<Lanes> volume;      // (#batches) filled volume V [m³]
     std::vector<Lanes> mu, lambda;  // (#batches) [Pa]
     std::vector<Lanes> law;         // (#batches) sim::Model as a number
-    std::vector<Lanes> hourglass;   // (#batches) stiffness of the bilinear hourglass modes [N/m]
-    std::vector<Lanes> weight;      // (#batches) V mu [J]
+    std::vector<Lanes> hourglass;  // (#batches) stiffness of the bilinear hourglass modes [N/m]
+    std::vector<Lanes> weight;     // (#batches) V mu [J]
 
     // (45 #batches) ∂P/∂F over mu, upper triangle. The one array that a product of K reads once and cannot keep in a
     // cache is in single precision: Newton's direction is inexact anyway, the gradient that it serves is not.

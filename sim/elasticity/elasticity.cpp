@@ -1,7 +1,7 @@
 #include "sim/elasticity/elasticity.h"
 
 #include "sim/base/parallel.h"
-#include "sim/elasticity/places.h"
+#include "sim/elasticity/brick_layout.h"
 
 #include <algorithm>
 #include <map>
@@ -77,7 +77,7 @@ template <bool writes>
 
 Elasticity::Elasticity(const Lattice& lattice, const Body& body) : edge_(lattice.edge) {
     // Equal bricks over the body's box of cells, those without a domain left out.
-    const Range range = cell_range(lattice);
+    const CellRange range = cell_range(lattice);
     std::array<int, 3> size;
     for (int k = 0; k < 3; ++k) {
         const int n = range.high[k] - range.low[k] + 1;
@@ -127,40 +127,28 @@ void Elasticity::fill_brick(const Lattice& lattice,
                             const Body& body,
                             const std::vector<int>& domains) {
     Brick brick;
-    const Places places = best_places(lattice, domains);
-    const int n_corners = places.count;
-    for (int a = 0; a < 8; ++a)
-        brick.step[a] = places.step_to_corner(a);
-    brick.n_local = (n_corners / lane_count + 2) * lane_count;  // whole batches
+    const BrickLayout layout = best_brick_layout(lattice, domains);
+    const int n_places = static_cast<int>(layout.corner.size());
+    brick.n_local = (n_places / lane_count + 2) * lane_count;  // whole batches
     brick.first_local = static_cast<int>(corner_of_local_.size());
+    corner_of_local_.insert(corner_of_local_.end(), layout.corner.begin(), layout.corner.end());
     corner_of_local_.resize(brick.first_local + brick.n_local, -1);
-
-    std::vector<int> domain_of_slot(n_corners + lane_count, -1);
-    for (const int p : domains) {
-        const int slot = places.of(lattice.cell[p]);
-        domain_of_slot[slot] = p;
-        for (int a = 0; a < 8; ++a)
-            corner_of_local_[brick.first_local + slot + brick.step[a]] =
-                lattice.corners[p][places.lattice_corner(a)];
-    }
-    for (int slot = 0; slot < n_corners; slot += lane_count) {
-        const int* const first = &domain_of_slot[slot];
-        if (std::any_of(first, first + lane_count, [](int p) { return p >= 0; }))
-            add_batch(lattice, body, slot, first, brick);
-    }
+    for (const Batch& batch : layout.batches)
+        add_batch(lattice, body, batch, brick);
     brick.stiffness.assign(45 * brick.batch.size(), FloatLanes{});
     bricks_.push_back(std::move(brick));
 }
 
-void Elasticity::add_batch(
-    const Lattice& lattice, const Body& body, int slot, const int* domains, Brick& brick) {
+void Elasticity::add_batch(const Lattice& lattice,
+                           const Body& body,
+                           const Batch& batch,
+                           Brick& brick) {
     const Lanes zero{};
     alignas(64) Lanes volume = zero, mu = zero, lambda = zero, law = zero - 1.0,
                       hourglass = zero;
     unsigned laws = 0;
     for (int l = 0; l < lane_count; ++l) {
-        const int p = domains[l];
-        brick.domain.push_back(p);
+        const int p = batch.domain[l];
         if (p < 0)
             continue;
         const Model model = body.regions[lattice.region[p]].model;
@@ -171,7 +159,7 @@ void Elasticity::add_batch(
         lambda[l] = lattice.lambda[p];
         hourglass[l] = hourglass_stiffness(lattice, p);
     }
-    brick.batch.push_back(slot);
+    brick.batch.push_back(batch);
     brick.laws.push_back(laws);
     brick.volume.push_back(volume);
     brick.mu.push_back(mu);
@@ -285,7 +273,7 @@ Elasticity::SmallestJ Elasticity::smallest_J(const Vec3p* x) const {
         for (std::size_t b = 0; b < brick.batch.size(); ++b) {
             const Lanes J = brick_J(brick, static_cast<int>(b), edge_, fields);
             for (int l = 0; l < lane_count; ++l)
-                if (const int p = brick.domain[lane_count * b + l];
+                if (const int p = brick.batch[b].domain[l];
                     p >= 0
                     && (!(J[l] >= smallest.J) || (J[l] == smallest.J && p < smallest.domain)))
                     smallest = {J[l], p};

@@ -40,9 +40,10 @@ class Elasticity : public ElasticEnergy {
     };
 
     void fill_brick(const Lattice& lattice, const Body& body, const std::vector<int>& domains);
-    // Those in lane_count neighbouring places, of which some are empty (-1).
-    static void add_batch(
-        const Lattice& lattice, const Body& body, int slot, const int* domains, Brick& brick);
+    static void add_batch(const Lattice& lattice,
+                          const Body& body,
+                          const Batch& batch,
+                          Brick& brick);
     void load(const Brick& brick, const Vec3p* values, Scratch& scratch) const;
     void store(const Brick& brick, const Scratch& scratch, Vec3p* values) const;
     template <class Kernel>
@@ -52,7 +53,7 @@ class Elasticity : public ElasticEnergy {
     std::vector<Brick> bricks_;     // by colour
     std::vector<int> color_start_;  // first brick of each colour, and their number
     std::vector<int>
-        corner_of_local_;  // (#local of all bricks) -1 where the lattice has no corner
+        corner_of_local_;  // (#local of all bricks) -1 past the last one of a brick
     std::vector<char>
         adds_;  // (#local of all bricks) whether a brick before has written to the corner
 };
