@@ -10,7 +10,10 @@ namespace sim {
 namespace {
 
 constexpr int chunk = 8192;
-constexpr double safety = 0.7;  // of the stable step of the bodies at rest: pressing stiffens
+constexpr double safety = 0.9;            // of the stable step of bodies as they are
+constexpr double safety_of_points = 0.7;  // of that of points at rest: pressing stiffens
+constexpr double steady = 0.01;   // change of how stiff bodies are, from measure to measure
+constexpr int steady_drifts = 8;  // after which what is steady is measured again
 constexpr double most_excited =
     1.9;  // w dt of the motion seen; beyond 2 it grows without bound
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -29,9 +32,9 @@ double sum_of(const Vec3p& v) {
 
 double Stepper::stable_limit(std::size_t b) const {
     const AssembledBody& body = assembly_.bodies[b];
-    return safety * 2
-           / (body.points ? points_[b]->highest_frequency(body.kernel)
-                          : body.highest_frequency);
+    if (body.points)
+        return safety_of_points * 2 / points_[b]->highest_frequency(body.kernel);
+    return safety * 2 / (body.highest_frequency * std::sqrt(stiffening_[b]));
 }
 
 double Stepper::stable_limit() const {
@@ -39,6 +42,32 @@ double Stepper::stable_limit() const {
     for (std::size_t b = 0; b < assembly_.bodies.size(); ++b)
         limit = std::min(limit, stable_limit(b));
     return limit;
+}
+
+void Stepper::measure_stiffening(const Field& x) {
+    drifts_since_measure_ = 0;
+    measure_after_ = 1;
+    stiffening_.assign(assembly_.bodies.size(), 1);
+    for (std::size_t b = 0; b < assembly_.bodies.size(); ++b)
+        if (const AssembledBody& body = assembly_.bodies[b]; !body.points)
+            stiffening_[b] = body.elasticity->stiffening(&x[body.begin]);
+}
+
+bool Stepper::has_stiffened(double drift) {
+    drifts_since_measure_ += n_drifts_;
+    if (drifts_since_measure_ < measure_after_)
+        return false;
+    const std::vector<double> before = stiffening_;
+    measure_stiffening(x_end_);
+    bool is_steady = true, is_too_stiff = false;
+    for (std::size_t b = 0; b < before.size(); ++b) {
+        is_steady = is_steady && std::abs(stiffening_[b] - before[b]) < steady * before[b];
+        is_too_stiff = is_too_stiff
+                       || (!assembly_.bodies[b].points
+                           && drift * safety > stable_limit(b) * most_excited / 2);
+    }
+    measure_after_ = is_steady ? steady_drifts : 1;
+    return is_too_stiff;
 }
 
 double Stepper::limit_of_way(double cells) const {
@@ -77,7 +106,11 @@ bool Stepper::try_explicit(State& state, double dt) {
         return false;
     end_on_targets();
 
-    // The forces there. The motion must not be faster than the step can follow.
+    // Neither bodies nor the motion may have become faster than the step can follow.
+    if (has_stiffened(length)) {
+        summary_.termination = Termination::Unstable;
+        return false;
+    }
     if (!std::isfinite(potential_.elastic_gradient(x_end_, end_gradient_) + end_drift(length)))
         return false;
     add_at_pinned_nodes(0.5);

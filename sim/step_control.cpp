@@ -24,6 +24,8 @@ constexpr int quiet_per_drift = 2;       // since the last touch, for each drift
 void Stepper::advance(State& state, double end, double dt) {
     failures.clear();
     measure_speed(state);
+    if (scene_.solver.steps == Steps::Explicit)
+        measure_stiffening(state.x);
     try {
         while (state.time < end)
             go_on(state, end, dt);

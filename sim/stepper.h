@@ -192,6 +192,9 @@ class Stepper {
     void set_reactions();
 
     // explicit_step.cpp
+    void measure_stiffening(const Field& x);
+    // Whether bodies are too stiff now, at the end of a step, for drifts that long.
+    bool has_stiffened(double drift);
     double stable_limit(std::size_t body) const;
     double stable_limit() const;
     double limit_of_way(double cells) const;
@@ -273,8 +276,12 @@ class Stepper {
     Field v_end_;                    // (#C) and how fast, of explicit steps [m/s]
     std::vector<double> speed_;      // (#bodies) of the fastest corner [m/s]
     Field gradient_, end_gradient_;  // of explicit steps, at the start and the end (#C) [N]
-    int n_drifts_ = 1;               // of the step, if it is explicit
-    double quiet_drifts_ = 0;        // where it ends
+    std::vector<double>
+        stiffening_;  // (#bodies) ElasticEnergy::stiffening() at the last measure
+    int drifts_since_measure_ = 0,
+        measure_after_ = 1;            // drifts: since then, and until the next
+    int n_drifts_ = 1;                 // of the step, if it is explicit
+    double quiet_drifts_ = 0;          // where it ends
     Field x_drift_, gradient_before_;  // where its last drift begins, of several (#C) [m], [N]
     Field inner_gradient_;  // Σ over what lies between its drifts, at prescribed corners [N]
     Field inner_at_nodes_;  // Σ over its drifts, at pinned nodes [N]

@@ -4,6 +4,7 @@
 #include "sim/materials/neo_hookean.h"
 #include "sim/materials/stable_neo_hookean.h"
 
+#include <algorithm>
 #include <utility>
 
 // Compiled for two instruction sets and chosen at run time; both do the same operations in every lane.
@@ -180,6 +181,15 @@ ALWAYS_INLINE void fetch_ahead(const FloatLanes* A) {
         __builtin_prefetch(A + 45 * ahead + k);
 }
 
+template <class Law>
+ALWAYS_INLINE void take_wave_modulus(
+    const Brick& brick, int b, Model model, const Matrix3<Lanes>& F, Lanes& modulus) {
+    if (brick.laws[b] & 1u << static_cast<int>(model))
+        modulus = select_positive(where_law(brick.law[b], model),
+                                  Law::highest_wave_modulus(F, brick.mu[b], brick.lambda[b]),
+                                  modulus);
+}
+
 }  // namespace
 
 SUPPLE_LANES
@@ -205,6 +215,22 @@ double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fi
     for (int l = 0; l < lane_count; ++l)
         sum += energy[l];
     return sum;
+}
+
+SUPPLE_LANES
+double brick_stiffening(const Brick& brick, double edge, const BrickFields& fields) {
+    double most = 1;
+    for (std::size_t b = 0; b < brick.batch.size(); ++b) {
+        Eight h[3];
+        load_modes(brick.batch[b].row, fields, h);
+        const Matrix3<Lanes> F = gradient_of_modes(h, brick.volume[b], edge);
+        Lanes modulus{};
+        take_wave_modulus<NeoHookean>(brick, b, Model::NeoHookean, F, modulus);
+        take_wave_modulus<StableNeoHookean>(brick, b, Model::StableNeoHookean, F, modulus);
+        take_wave_modulus<FixedCorotated>(brick, b, Model::FixedCorotated, F, modulus);
+        most = std::max(most, largest_lane(Lanes(brick.wave_compliance[b] * modulus)));
+    }
+    return most;
 }
 
 SUPPLE_LANES

@@ -33,6 +33,7 @@ struct Brick {
     std::vector<Lanes> law;         // (#batches) sim::Model as a number
     std::vector<Lanes> hourglass;  // (#batches) stiffness of the bilinear hourglass modes [N/m]
     std::vector<Lanes> weight;     // (#batches) V mu [J]
+    std::vector<Lanes> wave_compliance;  // (#batches) see wave_compliances() [1/Pa]
 
     // (45 #batches) ∂P/∂F over mu, upper triangle. The one array that a product of K reads once and cannot keep in a
     // cache is in single precision: Newton's direction is inexact anyway, the gradient that it serves is not.
@@ -62,6 +63,9 @@ void add_brick_product(const Brick& brick, double edge, const BrickFields& field
 
 /// The diagonal of K, up to terms that cancel between equal neighbours, is added to `out`.
 void add_brick_diagonal(const Brick& brick, double edge, const BrickFields& fields);
+
+/// ElasticEnergy::stiffening() of a brick.
+double brick_stiffening(const Brick& brick, double edge, const BrickFields& fields);
 
 /// J = det F of each slot of a batch at corners `in`; 1 for empty slots.
 Lanes brick_J(const Brick& brick, int batch, double edge, const BrickFields& fields);

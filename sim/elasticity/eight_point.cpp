@@ -33,7 +33,9 @@ void project(float* stiffness) {
 }  // namespace
 
 EightPoint::EightPoint(const Lattice& lattice, const Body& body)
-    : gradients_(lattice.edge), corners_(lattice.corners) {
+    : gradients_(lattice.edge),
+      corners_(lattice.corners),
+      wave_compliances_(wave_compliances(lattice)) {
     for (int p = 0; p < lattice.n_domains(); ++p)
         domains_.push_back({body.regions[lattice.region[p]].model,
                             lattice.domain_volume(p),
@@ -129,6 +131,16 @@ void EightPoint::diagonal(Vec3p* diagonal) {
         }
     });
     gather(diagonal);
+}
+
+double EightPoint::stiffening(const Vec3p* x) const {
+    double most = 1;
+    for (std::size_t p = 0; p < domains_.size(); ++p)
+        most = std::max(most,
+                        wave_compliances_[p]
+                            * fbar_wave_modulus(
+                                gradients_, domains_[p], values_of(static_cast<int>(p), x)));
+    return most;
 }
 
 EightPoint::SmallestJ EightPoint::smallest_J(const Vec3p* x) const {

@@ -22,6 +22,7 @@ class EightPoint : public ElasticEnergy {
     void linearize(const Vec3p* x, bool project) override;
     void product(const Vec3p* u, Vec3p* product) override;
     void diagonal(Vec3p* diagonal) override;
+    double stiffening(const Vec3p* x) const override;
     SmallestJ smallest_J(const Vec3p* x) const override;
 
   private:
@@ -32,6 +33,7 @@ class EightPoint : public ElasticEnergy {
     CubeGradients gradients_;
     std::vector<std::array<int, 8>> corners_;  // (#D)
     std::vector<FbarDomain> domains_;          // (#D)
+    std::vector<double> wave_compliances_;     // (#D)
     std::vector<int> begin_, entries_;  // of corner c: [begin_[c], begin_[c + 1]) of 8 p + a
     std::vector<Vec3p> parts_;          // (8 #D) what domains add to their corners
     std::vector<float> stiffness_;      // (576 #D) [N/m]

@@ -6,6 +6,7 @@
 #include "sim/scene.h"
 
 #include <memory>
+#include <vector>
 
 namespace sim {
 
@@ -27,6 +28,11 @@ class ElasticEnergy {
     /// A positive estimate of K's diagonal.   [N/m]
     virtual void diagonal(Vec3p* diagonal) = 0;
 
+    /// How much larger c² of the fastest wave in any domain is at x than at rest, at centres of domains, 1 at least: about
+    /// what the square of the highest frequency grows by. A domain that is forbidden, or whose x is not finite, counts for
+    /// nothing.
+    virtual double stiffening(const Vec3p* x) const = 0;
+
     struct SmallestJ {
         double J = 0;
         int domain = -1;
@@ -35,6 +41,9 @@ class ElasticEnergy {
     /// The smallest det F at any quadrature point.
     virtual SmallestJ smallest_J(const Vec3p* x) const = 0;
 };
+
+/// (#D) What turns rho c² of a wave in a domain into c² over that of the body's fastest wave at rest.   [1/Pa]
+std::vector<double> wave_compliances(const Lattice& lattice);
 
 /// The energy of a body by SolverOptions::quadrature.
 std::unique_ptr<ElasticEnergy> make_elastic_energy(const Lattice& lattice,

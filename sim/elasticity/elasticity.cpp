@@ -114,6 +114,8 @@ Elasticity::Elasticity(const Lattice& lattice, const Body& body) : edge_(lattice
         }
     color_start_.push_back(static_cast<int>(bricks_.size()));
 
+    add_wave_compliances(lattice);
+
     std::vector<char> met(lattice.n_corners(), 0);
     adds_.assign(corner_of_local_.size(), 0);
     for (std::size_t l = 0; l < corner_of_local_.size(); ++l)
@@ -167,6 +169,18 @@ void Elasticity::add_batch(const Lattice& lattice,
     brick.law.push_back(law);
     brick.hourglass.push_back(hourglass);
     brick.weight.push_back(volume * mu);
+}
+
+void Elasticity::add_wave_compliances(const Lattice& lattice) {
+    const std::vector<double> compliances = wave_compliances(lattice);
+    for (Brick& brick : bricks_)
+        for (const Batch& batch : brick.batch) {
+            alignas(64) Lanes compliance{};
+            for (int l = 0; l < lane_count; ++l)
+                if (batch.domain[l] >= 0)
+                    compliance[l] = compliances[batch.domain[l]];
+            brick.wave_compliance.push_back(compliance);
+        }
 }
 
 BrickFields Elasticity::Scratch::fields(int n_local) {
@@ -262,6 +276,19 @@ void Elasticity::diagonal(Vec3p* diagonal) {
         add_brick_diagonal(brick, edge_, fields);
         return 0.0;
     });
+}
+
+double Elasticity::stiffening(const Vec3p* x) const {
+    std::vector<double> of_brick(bricks_.size());
+    for_chunks(static_cast<int>(bricks_.size()), 1, [&](int first, int last) {
+        thread_local Scratch scratch;
+        for (int k = first; k < last; ++k) {
+            const BrickFields fields = scratch.fields(bricks_[k].n_local);
+            load(bricks_[k], x, scratch);
+            of_brick[k] = brick_stiffening(bricks_[k], edge_, fields);
+        }
+    });
+    return *std::max_element(of_brick.begin(), of_brick.end());
 }
 
 Elasticity::SmallestJ Elasticity::smallest_J(const Vec3p* x) const {

@@ -27,6 +27,7 @@ class Elasticity : public ElasticEnergy {
     void linearize(const Vec3p* x, bool project) override;
     void product(const Vec3p* u, Vec3p* product) override;
     void diagonal(Vec3p* diagonal) override;
+    double stiffening(const Vec3p* x) const override;
     SmallestJ smallest_J(const Vec3p* x) const override;
 
   private:
@@ -44,6 +45,7 @@ class Elasticity : public ElasticEnergy {
                           const Body& body,
                           const Batch& batch,
                           Brick& brick);
+    void add_wave_compliances(const Lattice& lattice);
     void load(const Brick& brick, const Vec3p* values, Scratch& scratch) const;
     void store(const Brick& brick, const Scratch& scratch, Vec3p* values) const;
     template <class Kernel>

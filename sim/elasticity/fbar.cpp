@@ -300,6 +300,15 @@ void fbar_stiffness(const CubeGradients& b,
     write_symmetric(K, g_centre, sum_of(p), domain.volume / 8, stiffness);
 }
 
+double fbar_wave_modulus(const CubeGradients& b,
+                         const FbarDomain& domain,
+                         const CornerValues& x) {
+    const Matrix3<double> F = at_centre(b, x).F;
+    return visit(domain.model, [&](auto law) {
+        return law.highest_wave_modulus(F, domain.mu, domain.lambda);
+    });
+}
+
 double fbar_smallest_J(const CubeGradients& b, const CornerValues& x) {
     return std::min(at_centre(b, x).J, least_of(at_points(b, x).J));
 }

@@ -48,6 +48,11 @@ void fbar_stiffness(const CubeGradients& b,
                     const CornerValues& x,
                     float* stiffness);
 
+/// rho c² of the fastest wave at the centre, from above.   [Pa]
+double fbar_wave_modulus(const CubeGradients& b,
+                         const FbarDomain& domain,
+                         const CornerValues& x);
+
 /// The smallest det F at the Gauss points and the centre.
 double fbar_smallest_J(const CubeGradients& b, const CornerValues& x);
 

@@ -3,6 +3,7 @@
 
 #include "sim/materials/packed_stiffness.h"
 #include "sim/materials/polar.h"
+#include "sim/materials/wave_modulus.h"
 
 namespace sim {
 
@@ -49,6 +50,13 @@ struct FixedCorotated {
         const S dh = lambda * (determinant(F, C) - 1.0);
         set_stiffness(F, C, 2.0 * mu, dh, lambda, A);
         subtract_rotation_derivative(F, R, 2.0 * mu, A);
+    }
+
+    /// rho c² of the fastest wave, from above: rotations only soften, while no two principal stretches sum to less than
+    /// zero.   [Pa]
+    template <class S>
+    [[gnu::always_inline]] static S highest_wave_modulus(const Matrix3<S>& F, S mu, S lambda) {
+        return wave_modulus(cofactor(F), S(2.0 * mu), lambda);
     }
 
   private:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/materials/packed_stiffness.h"
+#include "sim/materials/wave_modulus.h"
 
 namespace sim {
 
@@ -43,8 +44,14 @@ struct NeoHookean {
         const Matrix3<S> C = cofactor(F);
         const Volume<S> v = volume(F, C);
         const S dh = (lambda * v.log - mu) * v.inverse;
-        const S ddh = (lambda * v.inverse - dh) * v.inverse;
-        set_stiffness(F, C, mu, dh, ddh, A);
+        set_stiffness(F, C, mu, dh, second_derivative(v, mu, lambda), A);
+    }
+
+    /// rho c² of the fastest wave, from above.   [Pa]
+    template <class S>
+    [[gnu::always_inline]] static S highest_wave_modulus(const Matrix3<S>& F, S mu, S lambda) {
+        const Matrix3<S> C = cofactor(F);
+        return wave_modulus(C, mu, second_derivative(volume(F, C), mu, lambda));
     }
 
   private:
@@ -63,6 +70,12 @@ struct NeoHookean {
         return {log_of(J_safe),
                 select_positive(valid, 1.0 / J_safe, uniform<S>(Limits::quiet_NaN())),
                 select_positive(valid, uniform<S>(0), uniform<S>(Limits::infinity()))};
+    }
+
+    /// h''(J).
+    template <class S>
+    [[gnu::always_inline]] static S second_derivative(const Volume<S>& v, S mu, S lambda) {
+        return (lambda + mu - lambda * v.log) * v.inverse * v.inverse;
     }
 
     template <class S>

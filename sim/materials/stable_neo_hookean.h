@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/materials/packed_stiffness.h"
+#include "sim/materials/wave_modulus.h"
 
 namespace sim {
 
@@ -44,6 +45,12 @@ struct StableNeoHookean {
         const Matrix3<S> C = cofactor(F);
         const S dh = (lambda + mu) * (determinant(F, C) - 1.0) - mu;
         set_stiffness(F, C, mu, dh, lambda + mu, A);
+    }
+
+    /// rho c² of the fastest wave, from above.   [Pa]
+    template <class S>
+    [[gnu::always_inline]] static S highest_wave_modulus(const Matrix3<S>& F, S mu, S lambda) {
+        return wave_modulus(cofactor(F), mu, S(lambda + mu));
     }
 
   private:

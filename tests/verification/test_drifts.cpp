@@ -10,9 +10,10 @@
 
 namespace {
 
-constexpr double frame = 9.5e-3;        // [s]
-constexpr double longest = frame / 10;  // dt: there is time for two drifts in it
-constexpr int n_drifts = 22;            // in a frame: of 0.43 ms, the bar is stable at 0.47
+constexpr double frame = 9e-3;          // [s]
+constexpr double longest = frame / 8;   // dt: there is time for two drifts in it
+constexpr int n_drifts = 16;            // in a frame: of 0.56 ms, the bar is stable at 0.6
+constexpr int n_drifts_of_points = 22;  // of 0.41 ms, the bar is stable at 0.43
 constexpr int n_steps = 2;              // in a frame, as a map serves for 8 dt at most
 
 tests::BarOptions bar(sim::Method method, double dt) {
@@ -56,13 +57,13 @@ TEST_CASE("pins pull at points in a step of many drifts as in the mean of many s
     sim::Simulation longer(scene, frame), shorter(scene, frame);
     for (int k = 1; k <= 5; ++k) {
         longer.advance_to(frame * k);
-        const int n = n_drifts / longer.stats().steps;  // of the last step
-        REQUIRE(n * longer.stats().steps == n_drifts);
+        const int n = n_drifts_of_points / longer.stats().steps;  // of the last step
+        REQUIRE(n * longer.stats().steps == n_drifts_of_points);
         REQUIRE(n > 1);
         Vec3 pull{0, 0, 0};
-        for (int drift = 1; drift <= n_drifts; ++drift) {
-            shorter.advance_to(frame * (k - 1 + double(drift) / n_drifts));
-            if (drift > n_drifts - n)
+        for (int drift = 1; drift <= n_drifts_of_points; ++drift) {
+            shorter.advance_to(frame * (k - 1 + double(drift) / n_drifts_of_points));
+            if (drift > n_drifts_of_points - n)
                 pull += shorter.pins()[0].force / n;
         }
         CAPTURE(k, pull.transpose(), longer.pins()[0].force.transpose());
@@ -81,12 +82,13 @@ TEST_CASE("under one map for many drifts a bar swings as with a map for each dri
     if (method == sim::Method::Mpm)
         scene.solver.kernel = sim::Kernel::Cubic;
     sim::Simulation longer(scene, frame), shorter(scene, frame);
+    const int n = method == sim::Method::Mpm ? n_drifts_of_points : n_drifts;
     int n_of_longer = 0, n_of_shorter = 0;
     for (int k = 1; k <= 40; ++k) {
         longer.advance_to(frame * k);
         n_of_longer += longer.stats().steps;
-        for (int drift = 1; drift <= n_drifts; ++drift) {
-            shorter.advance_to(frame * (k - 1 + double(drift) / n_drifts));
+        for (int drift = 1; drift <= n; ++drift) {
+            shorter.advance_to(frame * (k - 1 + double(drift) / n));
             n_of_shorter += shorter.stats().steps;
         }
         const Vec3 by_longer = longer.probes()[0].position,
@@ -96,7 +98,7 @@ TEST_CASE("under one map for many drifts a bar swings as with a map for each dri
         CHECK((by_longer - by_shorter).norm()
               < (method == sim::Method::Mpm ? 0.02 : 0.01) * swing);
     }
-    CHECK(n_of_shorter == 40 * n_drifts);
+    CHECK(n_of_shorter == 40 * n);
     CHECK(n_of_longer < n_of_shorter / 6);
 }
 
@@ -135,8 +137,9 @@ TEST_CASE("a pin lets go in time though a map could serve longer", "[drifts]") {
     simulation.advance_to(frame);
     const double way = start.z() - simulation.probes()[0].position.z();
     // In the drift that begins before.
+    const double drift = 0.6e-3;
     CHECK(way <= g / 2 * std::pow(frame - released, 2));
-    CHECK(way >= g / 2 * std::pow(frame - released - frame / n_drifts, 2));
+    CHECK(way >= g / 2 * std::pow(frame - released - drift, 2));
 }
 
 TEST_CASE("steps of many drifts bounce on the ground as single drifts do", "[drifts]") {
@@ -248,18 +251,45 @@ TEST_CASE("cubes that meet in the middle of a long explicit step stay out of eac
     scene.bodies[1].velocity = {-speed / 2, 0, 0};
     sim::Simulation simulation(scene, frame);
     const sim::Stats start = simulation.stats();
-    double deepest = 0, least = 1e9;
+    double deepest = 0;
     for (int k = 1; k <= 40; ++k) {
         simulation.advance_to((0.2 / speed + 0.04) * k / 40);
         const sim::Stats now = simulation.stats();
         deepest = std::max(deepest, now.penetration);
-        least = std::min(least, tests::energy(now));
         CHECK((now.linear_momentum - start.linear_momentum).norm()
               < 1e-12 * start.total_mass * speed);
-        CHECK(tests::energy(now) < tests::energy(start) * (1 + 1e-6));
+        // What velocity Verlet keeps differs by ripples from the energy at the ends of steps.
+        CHECK(tests::energy(now) < tests::energy(start) * (1 + 1e-3));
     }
-    CHECK(least < 0.99 * tests::energy(start));  // they have met
+    CHECK(tests::energy(simulation.stats()) < 0.99 * tests::energy(start));  // they have met
     CHECK(deepest < 0.02);
+}
+
+TEST_CASE("a block that is pressed or pulled far, slowly, and let go gains no energy",
+          "[drifts]") {
+    // It stiffens, by more than twice the square of its highest frequency at rest: drifts must get shorter in time.
+    const double factor = GENERATE(0.7, 0.5, 2.0), side = 0.3, duration = 0.3;
+    const sim::Model model = GENERATE(sim::Model::NeoHookean, sim::Model::StableNeoHookean);
+    const sim::Method method = GENERATE(sim::Method::Fem, sim::Method::Domains);
+    CAPTURE(factor, int(model), int(method));
+    sim::Scene scene;
+    scene.solver = bar(method, 10e-3).solver;
+    scene.bodies = {tests::soft_block("block", {0, 0, 0}, Vec3::Constant(side), side / 6, 1e5)};
+    scene.bodies[0].regions[0].model = model;
+    sim::Pin top = tests::foot_of("block");
+    top.name = "top";
+    top.select.is = sim::Selector::HalfSpace{{0, 0, 0.999 * side}, {0, 0, -1}};
+    top.moves = sim::Pin::Velocity{{0, 0, (factor - 1) * side / duration}};
+    top.until = duration;
+    scene.pins = {tests::foot_of("block"), top};
+    sim::Simulation simulation(scene, frame);
+    simulation.advance_to(duration);
+    const double stored = tests::energy(simulation.stats());
+    for (int k = 1; k <= 30; ++k) {
+        simulation.advance_to(duration * (1 + k / 30.0));
+        CHECK(tests::energy(simulation.stats()) < stored * (1 + 1e-6));
+    }
+    CHECK(tests::energy(simulation.stats()) > 0.9 * stored);
 }
 
 TEST_CASE("a body that is flung at another within a long explicit step stays out of it",

@@ -22,12 +22,17 @@ sim::Body some_body() {
     return body;
 }
 
-/// The largest w of K u = w² M u, from all of K, a column a product.
-double by_eigenvalues(sim::ElasticEnergy& energy, const sim::Lattice& lattice) {
-    const int n = lattice.n_corners();
-    Field x, u(n), product(n);
+Field deformed(const sim::Lattice& lattice, const Mat3& F) {
+    Field x;
     for (const Vec3& X : lattice.corner_rest)
-        x.push_back(sim::padded(X));
+        x.push_back(sim::padded(F * X));
+    return x;
+}
+
+/// The largest w of K u = w² M u, K at x, from all of it, a column a product.
+double by_eigenvalues(sim::ElasticEnergy& energy, const sim::Lattice& lattice, const Field& x) {
+    const int n = lattice.n_corners();
+    Field u(n), product(n);
     energy.linearize(x.data(), false);
     Eigen::MatrixXd scaled(3 * n, 3 * n);  // M^-½ K M^-½
     for (int column = 0; column < 3 * n; ++column) {
@@ -50,10 +55,32 @@ TEST_CASE("the highest frequency is that of the largest eigenvalue") {
     const sim::Body body = some_body();
     const sim::Lattice lattice = sim::make_lattice(body);
     const auto energy = sim::make_elastic_energy(lattice, body, quadrature);
-    const double expected = by_eigenvalues(*energy, lattice),
+    const double expected =
+                     by_eigenvalues(*energy, lattice, deformed(lattice, Mat3::Identity())),
                  found = sim::highest_frequency(*energy, lattice);
     CHECK(found <= (1 + 1e-12) * expected);
     CHECK(found >= 0.98 * expected);
+}
+
+TEST_CASE("a body that is pressed or pulled gets no faster than it stiffens") {
+    const sim::Quadrature quadrature =
+        GENERATE(sim::Quadrature::OnePoint, sim::Quadrature::EightPoint);
+    const sim::Model model = GENERATE(
+        sim::Model::NeoHookean, sim::Model::StableNeoHookean, sim::Model::FixedCorotated);
+    const Vec3 stretches = GENERATE(
+        Vec3(1, 1, 0.6), Vec3(0.7, 0.7, 0.7), Vec3(1.8, 0.8, 0.8), Vec3(1.4, 1.4, 0.5));
+    CAPTURE(int(quadrature), int(model), stretches.transpose());
+    sim::Body body = some_body();
+    for (sim::Region& region : body.regions)
+        region.model = model;
+    const sim::Lattice lattice = sim::make_lattice(body);
+    const auto energy = sim::make_elastic_energy(lattice, body, quadrature);
+    const Field rest = deformed(lattice, Mat3::Identity()),
+                x = deformed(lattice, stretches.asDiagonal());
+    REQUIRE(energy->stiffening(rest.data()) == Approx(1).epsilon(1e-12));
+    const double faster =
+        by_eigenvalues(*energy, lattice, x) / by_eigenvalues(*energy, lattice, rest);
+    CHECK(faster < 1.02 * std::sqrt(energy->stiffening(x.data())));
 }
 
 TEST_CASE("the fastest mode of a large block is a pressure wave of two domain edges") {
