@@ -12,8 +12,11 @@ namespace sim {
 namespace {
 
 constexpr double beyond_domain = 0.25;  // that strangers are continued, in their edges
-constexpr double watched = 0.9;         // gaps of vertices that are listed, in domain edges
-constexpr int chunk = 8;                // of leaves
+constexpr double watched = 0.65;        // gaps of vertices that are listed, in domain edges
+constexpr double half_box = 0.5 + beyond_domain + watched;
+static_assert(3 * half_box * half_box < neighbourhood * neighbourhood,
+              "else boxes meet at rest that strangers are looked for in");
+constexpr int chunk = 8;  // of leaves
 
 }  // namespace
 
