@@ -80,14 +80,14 @@ Simulation::Simulation(Scene scene, double frame_time)
 
 Simulation::~Simulation() = default;
 
-void Simulation::advance_to(double time) {
+void Simulation::advance_to(double time, const std::function<void(double)>& after_step) {
     Stepper& stepper = impl_->stepper;
     State& state = impl_->state;
     stepper.newton_iterations = stepper.cg_iterations = stepper.steps = 0;
     if (impl_->scene.solver.steps == Steps::Static)
         stepper.equilibrium(state, time);
     else
-        stepper.advance(state, time, impl_->dt);
+        stepper.advance(state, time, impl_->dt, after_step);
 }
 
 double Simulation::time() const {
@@ -166,11 +166,8 @@ std::vector<std::byte> Simulation::checkpoint() const {
     append(bytes, checkpoint_format, sizeof checkpoint_format);
     const State& state = impl_->state;
     const double n_contacts = static_cast<double>(state.contacts.size());
-    for (const double number : {state.time,
-                                state.last_dt,
-                                state.dt_limit,
-                                state.quiet_drifts,
-                                n_contacts})
+    for (const double number :
+         {state.time, state.last_dt, state.dt_limit, state.quiet_drifts, n_contacts})
         append(bytes, &number, sizeof(double));
     append(bytes, state.contacts.data(), state.contacts.size() * sizeof(HeldContact));
     append(bytes, state.top_speed.data(), state.top_speed.size() * sizeof(double));
@@ -210,11 +207,8 @@ void Simulation::restore(const std::vector<std::byte>& bytes) {
         next += size;
     };
     double n_contacts = 0;
-    for (double* number : {&state.time,
-                           &state.last_dt,
-                           &state.dt_limit,
-                           &state.quiet_drifts,
-                           &n_contacts})
+    for (double* number :
+         {&state.time, &state.last_dt, &state.dt_limit, &state.quiet_drifts, &n_contacts})
         take(number, sizeof(double));
     assets::check(n_contacts * sizeof(HeldContact) <= bytes.size(),
                   "checkpoint of another scene");

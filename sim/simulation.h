@@ -7,6 +7,7 @@
 #include "sim/scene.h"
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -51,8 +52,9 @@ class Simulation {
     ~Simulation();
 
     /// Steps until `time` in steps no longer than dt, halved where they fail; `Steps::Static`: equilibrium of the loads then.
-    /// Throws Error(Diverged) naming place, body, region and likely cause.
-    void advance_to(double time);
+    /// Throws Error(Diverged) naming place, body, region and likely cause, and whatever `after_step` throws, which is told
+    /// the time after each step, also one that failed: then only restore() goes on.
+    void advance_to(double time, const std::function<void(double time)>& after_step = {});
 
     double time() const;
     const Scene& scene() const;

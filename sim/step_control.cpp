@@ -21,14 +21,20 @@ constexpr int quiet_per_drift = 2;       // since the last touch, for each drift
 
 }  // namespace
 
-void Stepper::advance(State& state, double end, double dt) {
+void Stepper::advance(State& state,
+                      double end,
+                      double dt,
+                      const std::function<void(double)>& after_step) {
     failures.clear();
     measure_speed(state);
     if (scene_.solver.steps == Steps::Explicit)
         measure_stiffening(state.x);
     try {
-        while (state.time < end)
+        while (state.time < end) {
             go_on(state, end, dt);
+            if (after_step)
+                after_step(state.time);
+        }
     } catch (const FlownApart&) {
         throw diagnose_flown_apart(scene_, assembly_, state);
     }

@@ -30,7 +30,10 @@ class Stepper {
     /// allow: a step that fails is halved, and grows back slowly. Explicit steps are longer while no surfaces touch: kicks
     /// and drifts, no longer than that, are repeated under one map T as long as no slaved corner goes far in the cells of
     /// the grid. Throws Error(Diverged) where halving does not help.
-    void advance(State& state, double end, double dt);
+    void advance(State& state,
+                 double end,
+                 double dt,
+                 const std::function<void(double time)>& after_step);
 
     /// Equilibrium of the loads at `time`, reached from `state` by moving the pins there; velocities become zero.
     /// Where the way is too long for one solve it is halved. Throws Error(Diverged).

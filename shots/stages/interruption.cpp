@@ -26,9 +26,9 @@ void catch_interruptions() {
 
 void stop_if_interrupted() {
     if (interrupted)
-        throw assets::Error(
-            assets::ErrorKind::Interrupted,
-            "interrupted; everything so far is saved, and the same command goes on from there");
+        throw assets::Error(assets::ErrorKind::Interrupted,
+                            "interrupted; every frame that was done is saved, and the same "
+                            "command goes on from there");
 }
 
 }  // namespace shots

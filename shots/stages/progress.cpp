@@ -12,6 +12,7 @@ namespace shots {
 namespace {
 
 constexpr int bar_width = 24;
+constexpr double seconds_per_show = 0.2;
 
 double seconds_between(std::chrono::steady_clock::time_point from,
                        std::chrono::steady_clock::time_point to) {
@@ -39,11 +40,13 @@ Progress::~Progress() {
 void Progress::start(const std::string& name, int total, int done) {
     finish();
     name_ = name;
+    label_.clear();
     total_ = total;
     done_ = done_before_ = done;
+    share_ = 0;
     started_ = last_ = Clock::now();
     if (style_ == ProgressStyle::Bar)
-        show_bar("", 0);
+        show_bar(started_);
 }
 
 void Progress::advance(const std::string& label) {
@@ -51,9 +54,11 @@ void Progress::advance(const std::string& label) {
     const double elapsed = seconds_between(started_, now);
     const double latest = seconds_between(last_, now);
     last_ = now;
+    label_ = label;
     ++done_;
+    share_ = 0;
     if (style_ == ProgressStyle::Bar)
-        show_bar(label, elapsed);
+        show_bar(now);
     if (style_ == ProgressStyle::Lines) {
         const double each = elapsed / (done_ - done_before_);
         out_ << fmt::format("{} {} ({}/{}): {:.3f} s, {}, {} left\n",
@@ -68,6 +73,14 @@ void Progress::advance(const std::string& label) {
     }
 }
 
+void Progress::reach(double share) {
+    const auto now = Clock::now();
+    if (style_ != ProgressStyle::Bar || seconds_between(shown_, now) < seconds_per_show)
+        return;
+    share_ = std::clamp(share, 0.0, 1.0);
+    show_bar(now);
+}
+
 void Progress::say(const std::string& message) {
     finish();
     if (style_ != ProgressStyle::Quiet)
@@ -80,21 +93,26 @@ void Progress::finish() {
     shown_width_ = 0;
 }
 
-void Progress::show_bar(const std::string& label, double elapsed) {
-    const int filled = total_ > 0 ? bar_width * done_ / total_ : bar_width;
+void Progress::show_bar(Clock::time_point now) {
+    const double reached = done_ + share_;
+    const int filled = total_ > 0 ? static_cast<int>(bar_width * reached / total_) : bar_width;
     std::string line = fmt::format("{} [{:.<{}}] {}/{}",
                                    name_,
                                    std::string(static_cast<std::size_t>(filled), '#'),
                                    bar_width,
                                    done_,
                                    total_);
-    if (done_ > done_before_) {
-        const double each = elapsed / (done_ - done_before_);
-        line += fmt::format("  {}  {}  {} left",
-                            label,
+    if (share_ > 0)
+        line += fmt::format(" + {:.0f}%", std::floor(100 * share_));
+    if (reached > done_before_) {
+        const double each = seconds_between(started_, now) / (reached - done_before_);
+        line += fmt::format("  {}{}{}  {} left",
+                            label_,
+                            label_.empty() ? "" : "  ",
                             rate_text(each),
-                            duration_text(each * (total_ - done_)));
+                            duration_text(each * (total_ - reached)));
     }
+    shown_ = now;
     // Blanks cover what a longer line has left on the screen.
     const int width = static_cast<int>(line.size());
     line.append(static_cast<std::size_t>(std::max(0, shown_width_ - width)), ' ');

@@ -31,6 +31,9 @@ class Progress {
     /// One more item is done; `label` names it ("frame 1001").
     void advance(const std::string& label);
 
+    /// A share of the next item is done, 0 to 1; shown from time to time where the style is Bar.
+    void reach(double share);
+
     /// A line of its own, without spoiling the bar: notes for the user. Nothing where Quiet.
     void say(const std::string& message);
 
@@ -40,13 +43,15 @@ class Progress {
   private:
     using Clock = std::chrono::steady_clock;
 
-    void show_bar(const std::string& label, double elapsed);
+    void show_bar(Clock::time_point now);
 
     ProgressStyle style_;
     std::ostream& out_;
     std::string name_;
+    std::string label_;  // of the last item
     int total_ = 0, done_ = 0, done_before_ = 0;
-    Clock::time_point started_, last_;
+    double share_ = 0;  // of the next one
+    Clock::time_point started_, last_, shown_;
     int shown_width_ = 0;  // of the bar's line on the screen now
 };
 

@@ -112,10 +112,13 @@ void compute_frame(const SimulateJob& job,
                    assets::FrameCacheWriter& cache,
                    Progress& progress) {
     const int number = job.frames[static_cast<std::size_t>(index)];
-    const double time = index / job.fps;
+    const double time = index / job.fps, start = (index - 1) / job.fps;
     const auto before = Clock::now();
     if (index > 0 || job.scene.solver.steps == sim::Steps::Static)
-        simulation.advance_to(time);
+        simulation.advance_to(time, [&](double now) {
+            stop_if_interrupted();
+            progress.reach((now - start) * job.fps);
+        });
     const double seconds = std::chrono::duration<double>(Clock::now() - before).count();
     if (const auto& failures = simulation.failures(); !failures.empty())
         progress.say(fmt::format("frame {}: {} failed steps were halved, the first: {}",

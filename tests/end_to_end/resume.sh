@@ -28,6 +28,21 @@ for table in probes pins; do
     cmp "killed/$table.csv" "whole/$table.csv" || fail "$table.csv differs"
 done
 
+# A frame that takes long, here a minute, is given up.
+"$supple" sim "$tiny" --set frames=1-2 --set solver.dt="1e-8 s" --out long --quiet >/dev/null 2>err.txt &
+pid=$!
+for _ in $(seq 2000); do
+    [ -e long/cache/frame.0001.bin ] && break
+    sleep 0.005
+done
+sleep 0.2
+kill -TERM "$pid"
+code=0
+wait "$pid" || code=$?
+[ "$code" -eq 75 ] || fail "an interruption within a frame must end with 75, not $code"
+[ ! -e long/cache/frame.0002.bin ] || fail "the frame was not given up"
+[ -e long/cache/frame.0001.bin ] || fail "a frame that was done is lost"
+
 # A longer shot goes on where the shorter one ended.
 "$supple" sim "$tiny" --set frames=1-10 --out longer --quiet >/dev/null
 "$supple" sim "$tiny" --set frames=1-40 --out longer --quiet >/dev/null

@@ -44,7 +44,7 @@ Simulation::Simulation(Scene scene, double) : impl_(std::make_unique<Impl>()) {
 
 Simulation::~Simulation() = default;
 
-void Simulation::advance_to(double time) {
+void Simulation::advance_to(double time, const std::function<void(double)>&) {
     if (time >= tests::divergence_time())
         throw assets::Error(assets::ErrorKind::Diverged, "the fake diverges");
     if (time == tests::interruption_time())

@@ -2,7 +2,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <chrono>
 #include <sstream>
+#include <thread>
 
 using namespace shots;
 using Catch::Matchers::Contains;
@@ -48,6 +50,32 @@ TEST_CASE("a bar rewrites its line and ends it before anything else is said") {
         CHECK_THAT(out.str(), Contains("\rrender [############............] 2/4  frame 2  "));
     }
     CHECK_THAT(out.str(), EndsWith(" left\n"));
+}
+
+TEST_CASE("a bar shows how far a long item has come, from time to time") {
+    std::ostringstream out;
+    Progress progress(ProgressStyle::Bar, out);
+    progress.start("sim", 4);
+    const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(250)); };
+    progress.reach(0.3);  // too soon
+    CHECK_THAT(out.str(), EndsWith("0/4"));
+    wait();
+    progress.reach(0.509);
+    CHECK_THAT(out.str(), Contains("\rsim [###.....................] 0/4 + 50%  "));
+    progress.advance("frame 1");
+    CHECK_THAT(out.str(), Contains("\rsim [######..................] 1/4  frame 1  "));
+    wait();
+    progress.reach(0.25);
+    CHECK_THAT(out.str(), Contains("] 1/4 + 25%  frame 1  "));
+}
+
+TEST_CASE("a log is not told how far an item has come") {
+    std::ostringstream out;
+    Progress progress(ProgressStyle::Lines, out);
+    progress.start("sim", 4);
+    std::this_thread::sleep_for(std::chrono::milliseconds(250));
+    progress.reach(0.5);
+    CHECK(out.str().empty());
 }
 
 TEST_CASE("quiet means nothing at all") {
