@@ -66,7 +66,10 @@ bool Stepper::has_stiffened(double drift) {
                        || (!assembly_.bodies[b].points
                            && drift * safety > stable_limit(b) * most_excited / 2);
     }
-    measure_after_ = is_steady ? steady_drifts : 1;
+    if (is_too_stiff)
+        stiffening_ = before;  // the step is taken again from there
+    else if (is_steady)
+        measure_after_ = steady_drifts;
     return is_too_stiff;
 }
 
