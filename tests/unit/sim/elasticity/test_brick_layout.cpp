@@ -1,4 +1,5 @@
 #include "sim/elasticity/brick_layout.h"
+#include "tests/support/box_body.h"
 
 #include <catch2/catch.hpp>
 
@@ -6,21 +7,6 @@
 #include <set>
 
 namespace {
-
-sim::Lattice lattice_of(const assets::Shape& shape, double edge) {
-    sim::Body body;
-    body.name = "body";
-    body.domain_size = edge;
-    body.source.geometry = shape;
-    sim::Region region;
-    region.name = "all";
-    region.select.is = sim::Selector::All{};
-    region.young_modulus = 1e5;
-    region.poisson_ratio = 0.3;
-    region.density = 1000;
-    body.regions.push_back(region);
-    return sim::make_lattice(body);
-}
 
 sim::BrickLayout layout_of(const sim::Lattice& lattice) {
     std::vector<int> all(lattice.n_domains());
@@ -45,7 +31,7 @@ TEST_CASE(
     "a brick has each domain in one lane, its corners in four rows, and each corner once") {
     // A torus: rows of many lengths, with gaps.
     const assets::Torus ring{{0, 0, 0}, {0.3, 0.2, 1}, 0.8, 0.25};
-    const sim::Lattice lattice = lattice_of(assets::Shape{ring}, 0.1);
+    const sim::Lattice lattice = sim::make_lattice(tests::body_of(ring, 0.1));
     const sim::BrickLayout layout = layout_of(lattice);
 
     std::set<int> domains;
@@ -67,7 +53,7 @@ TEST_CASE(
 
 TEST_CASE("batches of a brick go on from one row to the next where rows are equally long") {
     const sim::Lattice lattice =
-        lattice_of(assets::Shape{assets::Box{{0, 0, 0}, {0.5, 0.3, 0.2}}}, 0.1);
+        sim::make_lattice(tests::body_of(assets::Box{{0, 0, 0}, {0.5, 0.3, 0.2}}, 0.1));
     const sim::BrickLayout layout = layout_of(lattice);
     // A layer of z has three rows of 5 domains, each with 6 corners: 17 places from the first to the last. Row by row it would
     // take two batches of four each.
