@@ -34,35 +34,41 @@ ALWAYS_INLINE void add_to(double* p, const Lanes& v) {
     store_lanes(load_lanes(p) + v, p);
 }
 
-/// The eight values of one component, at the corners or as coefficients of the modes.
+/// The eight values of one component, at the corners or as coefficients of the modes 1, ξ, η, ξη, ζ, ξζ, ηζ, ξηζ with ξ, η,
+/// ζ = ±1 at the corners, ξ along the rows: of corner values v_a they are h_m = Σ_a ξ_m(a) v_a, so that
+/// v(ξ,η,ζ) = Σ_m h_m/8 ξ_m (the Walsh-Hadamard transform of size 8).
 struct alignas(sizeof(Lanes)) Eight {
     Lanes v[8];
 };
 
-/// Values at the eight corners -> coefficients h_m = Σ_a ξ_m(a) v_a of the modes 1, ξ, η, ξη, ζ, ξζ, ηζ, ξηζ with
-/// ξ, η, ζ = ±1 at the corners, so that v(ξ,η,ζ) = Σ_m h_m/8 ξ_m (the Walsh-Hadamard transform of size 8).
-ALWAYS_INLINE void to_modes(Eight& e) {
-    times<3>([&](auto axis) INLINED {
-        times<8>([&](auto a) INLINED {
+/// The same across the rows alone, for each place along them: 1, η, ζ, ηζ.
+struct alignas(sizeof(Lanes)) Four {
+    Lanes v[4];
+};
+
+/// Values in the four rows -> coefficients.
+ALWAYS_INLINE void to_modes(Four& e) {
+    times<2>([&](auto axis) INLINED {
+        times<4>([&](auto r) INLINED {
             constexpr int bit = 1 << axis;
-            if constexpr (!(a & bit)) {
-                const Lanes low = e.v[a], high = e.v[a | bit];
-                e.v[a] = low + high;
-                e.v[a | bit] = high - low;
+            if constexpr (!(r & bit)) {
+                const Lanes low = e.v[r], high = e.v[r | bit];
+                e.v[r] = low + high;
+                e.v[r | bit] = high - low;
             }
         });
     });
 }
 
-/// The transpose of to_modes: ∂/∂v_a = Σ_m ξ_m(a) ∂/∂h_m.
-ALWAYS_INLINE void from_modes(Eight& e) {
-    times<3>([&](auto axis) INLINED {
-        times<8>([&](auto a) INLINED {
+/// The transpose of to_modes.
+ALWAYS_INLINE void from_modes(Four& e) {
+    times<2>([&](auto axis) INLINED {
+        times<4>([&](auto r) INLINED {
             constexpr int bit = 1 << axis;
-            if constexpr (!(a & bit)) {
-                const Lanes low = e.v[a], high = e.v[a | bit];
-                e.v[a] = low - high;
-                e.v[a | bit] = low + high;
+            if constexpr (!(r & bit)) {
+                const Lanes low = e.v[r], high = e.v[r | bit];
+                e.v[r] = low - high;
+                e.v[r | bit] = low + high;
             }
         });
     });
@@ -73,31 +79,100 @@ constexpr int linear_mode[3] = {1, 2, 4};
 constexpr int bilinear_mode[3] = {3, 5, 6};
 constexpr int trilinear_mode = 7;
 
-ALWAYS_INLINE void load_modes(const std::array<int, 4>& row,
-                              const BrickFields& fields,
-                              Eight h[3]) {
-    times<3>([&](auto i) INLINED {
-        times<8>([&](auto a)
-                     INLINED { h[i].v[a] = load_lanes(fields.in[i] + row[a / 2] + (a & 1)); });
-        to_modes(h[i]);
-    });
+/// Of each lane what follows it in its row: of the last one that is the first lane of `next`.
+ALWAYS_INLINE Lanes followed_by(const Lanes& v, const Lanes& next) {
+    return __builtin_shufflevector(v, next, 1, 2, 3, 4);
 }
 
-/// Where sums for corner a of component i go, seen from the corner of the same row on the left.
-ALWAYS_INLINE double* corner_sums(const BrickFields& fields, int i, int a) {
-    return a & 1 ? fields.out_right[i] : fields.out[i];
+/// And what comes before it: of the first one that is the last lane of `before`.
+ALWAYS_INLINE Lanes preceded_by(const Lanes& before, const Lanes& v) {
+    return __builtin_shufflevector(before, v, 3, 4, 5, 6);
 }
 
-ALWAYS_INLINE void add_modes(const std::array<int, 4>& row,
-                             const BrickFields& fields,
-                             Eight g[3]) {
-    times<3>([&](auto i) INLINED {
-        g[i].v[0] = Lanes{};
-        from_modes(g[i]);
-        times<8>([&](auto a)
-                     INLINED { add_to(corner_sums(fields, i, a) + row[a / 2], g[i].v[a]); });
-    });
-}
+/// Modes at the corners of a brick, batch by batch. As a corner is the right one of a domain and the left one of the next, what
+/// a batch finds across the rows at its end begins the next one where that continues it.
+class ModesOfCorners {
+  public:
+    ALWAYS_INLINE ModesOfCorners(const Brick& brick, const BrickFields& fields)
+        : brick_(brick), fields_(fields) {}
+
+    /// Of batch b, which must follow the one that was asked for before unless it continues none.
+    ALWAYS_INLINE void load(std::size_t b, Eight h[3]) {
+        const Batch& batch = brick_.batch[b];
+        if (!batch.continues)
+            load_across(batch, 0, next_);
+        Four here[3];
+        times<3>([&](auto i) INLINED { here[i] = next_[i]; });
+        load_across(batch, lane_count, next_);
+        times<3>([&](auto i) INLINED {
+            times<4>([&](auto r) INLINED {
+                const Lanes left = here[i].v[r], right = followed_by(left, next_[i].v[r]);
+                h[i].v[2 * r] = left + right;
+                h[i].v[2 * r + 1] = right - left;
+            });
+        });
+    }
+
+  private:
+    ALWAYS_INLINE void load_across(const Batch& batch, int ahead, Four across[3]) const {
+        times<3>([&](auto i) INLINED {
+            times<4>([&](auto r) INLINED {
+                across[i].v[r] = load_lanes(fields_.in[i] + batch.row[r] + ahead);
+            });
+            to_modes(across[i]);
+        });
+    }
+
+    const Brick& brick_;
+    const BrickFields& fields_;
+    Four next_[3];
+};
+
+/// Sums at the corners of a brick of what modes give to them, batch by batch.
+class SumsAtCorners {
+  public:
+    ALWAYS_INLINE SumsAtCorners(const Brick& brick, const BrickFields& fields)
+        : brick_(brick), fields_(fields) {}
+
+    /// Adds ∂/∂v_a = Σ_m ξ_m(a) ∂/∂h_m of batch b, the next one.
+    ALWAYS_INLINE void add(std::size_t b, const Eight g[3]) {
+        const Batch& batch = brick_.batch[b];
+        Four right[3];
+        times<3>([&](auto i) INLINED {
+            Four sum;
+            times<4>([&](auto r) INLINED {
+                const Lanes low = g[i].v[2 * r], high = g[i].v[2 * r + 1];
+                right[i].v[r] = low + high;
+                sum.v[r] = (low - high) + preceded_by(before_[i].v[r], right[i].v[r]);
+            });
+            add_to_rows(batch, 0, i, sum);
+        });
+        const bool is_last = b + 1 == brick_.batch.size() || !brick_.batch[b + 1].continues;
+        times<3>([&](auto i) INLINED {
+            if (is_last) {
+                Four sum;
+                times<4>([&](auto r) INLINED {
+                    sum.v[r] = preceded_by(right[i].v[r], Lanes{});
+                    right[i].v[r] = Lanes{};
+                });
+                add_to_rows(batch, lane_count, i, sum);
+            }
+            before_[i] = right[i];
+        });
+    }
+
+  private:
+    ALWAYS_INLINE void add_to_rows(const Batch& batch, int ahead, int i, Four& sum) const {
+        from_modes(sum);
+        times<4>([&](auto r)
+                     INLINED { add_to(fields_.out[i] + batch.row[r] + ahead, sum.v[r]); });
+    }
+
+    const Brick& brick_;
+    const BrickFields& fields_;
+    Four before_[3] =
+        {};  // of the right corners of the batch before, where this one continues it
+};
 
 /// F of a batch; the identity in empty slots. ∂x/∂X_j = h_j / (4 s).
 ALWAYS_INLINE Matrix3<Lanes> gradient_of_modes(const Eight h[3],
@@ -111,10 +186,11 @@ ALWAYS_INLINE Matrix3<Lanes> gradient_of_modes(const Eight h[3],
     return F;
 }
 
-/// ∂E_hg/∂h_m = k h_m for bilinear modes, k/2 h_m for the trilinear one; returns E_hg.
+/// ∂E_hg/∂h_m = k h_m for bilinear modes, k/2 h_m for the trilinear one, and 0 for the mean; returns E_hg.
 ALWAYS_INLINE Lanes hourglass(const Lanes& k, const Eight h[3], Eight g[3]) {
     Lanes energy{};
     times<3>([&](auto i) INLINED {
+        g[i].v[0] = Lanes{};
         times<3>([&](auto m) INLINED {
             constexpr int mode = bilinear_mode[m];
             g[i].v[mode] = k * h[i].v[mode];
@@ -195,9 +271,11 @@ ALWAYS_INLINE void take_wave_modulus(
 SUPPLE_LANES
 double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fields) {
     Lanes energy{};
+    ModesOfCorners modes(brick, fields);
+    SumsAtCorners sums(brick, fields);
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
         Eight h[3], g[3];
-        load_modes(brick.batch[b].row, fields, h);
+        modes.load(b, h);
         const Matrix3<Lanes> F = gradient_of_modes(h, brick.volume[b], edge);
 
         Lanes psi{};
@@ -209,7 +287,7 @@ double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fi
         energy += brick.volume[b] * psi + hourglass(brick.hourglass[b], h, g);
         const Lanes scale = brick.volume[b] * (1 / (4 * edge));
         times<9>([&](auto k) INLINED { g[k % 3].v[linear_mode[k / 3]] = scale * P.m[k]; });
-        add_modes(brick.batch[b].row, fields, g);
+        sums.add(b, g);
     }
     double sum = 0;
     for (int l = 0; l < lane_count; ++l)
@@ -220,9 +298,10 @@ double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fi
 SUPPLE_LANES
 double brick_stiffening(const Brick& brick, double edge, const BrickFields& fields) {
     double most = 1;
+    ModesOfCorners modes(brick, fields);
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
         Eight h[3];
-        load_modes(brick.batch[b].row, fields, h);
+        modes.load(b, h);
         const Matrix3<Lanes> F = gradient_of_modes(h, brick.volume[b], edge);
         Lanes modulus{};
         take_wave_modulus<NeoHookean>(brick, b, Model::NeoHookean, F, modulus);
@@ -235,9 +314,10 @@ double brick_stiffening(const Brick& brick, double edge, const BrickFields& fiel
 
 SUPPLE_LANES
 void linearize_brick(Brick& brick, double edge, const BrickFields& fields) {
+    ModesOfCorners modes(brick, fields);
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
         Eight h[3];
-        load_modes(brick.batch[b].row, fields, h);
+        modes.load(b, h);
         const Matrix3<Lanes> F = gradient_of_modes(h, brick.volume[b], edge);
         FloatLanes* A = &brick.stiffness[45 * b];
         take_stiffness<NeoHookean>(brick, b, Model::NeoHookean, F, A);
@@ -248,11 +328,13 @@ void linearize_brick(Brick& brick, double edge, const BrickFields& fields) {
 
 SUPPLE_LANES
 void add_brick_product(const Brick& brick, double edge, const BrickFields& fields) {
+    ModesOfCorners modes(brick, fields);
+    SumsAtCorners sums(brick, fields);
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
         // 1/(4s) from the modes to F, and 1/(4s) back
         const Lanes scale = brick.weight[b] * (1 / (16 * edge * edge));
         Eight h[3], g[3];
-        load_modes(brick.batch[b].row, fields, h);
+        modes.load(b, h);
         Matrix3<Lanes> dF, dP{};
         times<9>([&](auto k) INLINED { dF.m[k] = scale * h[k % 3].v[linear_mode[k / 3]]; });
         const FloatLanes* A = &brick.stiffness[45 * b];
@@ -270,7 +352,7 @@ void add_brick_product(const Brick& brick, double edge, const BrickFields& field
         });
         hourglass(brick.hourglass[b], h, g);
         times<9>([&](auto k) INLINED { g[k % 3].v[linear_mode[k / 3]] = dP.m[k]; });
-        add_modes(brick.batch[b].row, fields, g);
+        sums.add(b, g);
     }
 }
 
@@ -279,7 +361,9 @@ void add_brick_diagonal(const Brick& brick, double edge, const BrickFields& fiel
     // Of K_aa = Σ_jk b_j b_k V A_(ij)(ik) with b = (±1, ±1, ±1)/(4s) the terms j ≠ k change sign from one domain
     // around a corner to the next; the hourglass modes add three bilinear terms k and one trilinear k/2.
     constexpr int packed_diagonal[9] = {0, 9, 17, 24, 30, 35, 39, 42, 44};
+    SumsAtCorners sums(brick, fields);
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
+        Eight g[3] = {};  // the same at all corners
         const FloatLanes* A = &brick.stiffness[45 * b];
         const Lanes scale = brick.weight[b] * (1 / (16 * edge * edge));
         times<3>([&](auto i) INLINED {
@@ -289,17 +373,20 @@ void add_brick_diagonal(const Brick& brick, double edge, const BrickFields& fiel
                                                   + A[packed_diagonal[6 + i]],
                                               Lanes)
                 + 3.5 * brick.hourglass[b];
-            times<8>([&](auto a) INLINED {
-                add_to(corner_sums(fields, i, a) + brick.batch[b].row[a / 2], sum);
-            });
+            g[i].v[0] = sum;
         });
+        sums.add(b, g);
     }
 }
 
-Lanes brick_J(const Brick& brick, int b, double edge, const BrickFields& fields) {
-    Eight h[3];
-    load_modes(brick.batch[b].row, fields, h);
-    return determinant(gradient_of_modes(h, brick.volume[b], edge));
+SUPPLE_LANES
+void find_J(const Brick& brick, double edge, const BrickFields& fields, Lanes* J) {
+    ModesOfCorners modes(brick, fields);
+    for (std::size_t b = 0; b < brick.batch.size(); ++b) {
+        Eight h[3];
+        modes.load(b, h);
+        J[b] = determinant(gradient_of_modes(h, brick.volume[b], edge));
+    }
 }
 
 }  // namespace sim

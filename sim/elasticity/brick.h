@@ -16,6 +16,7 @@ struct Batch {
     std::array<int, 4>
         row;  // places of corners 0, 2, 4 and 6 of the first lane; 1, 3, 5 and 7 follow
     std::array<int, lane_count> domain;  // -1 where none
+    bool continues = false;  // whether its rows begin where those of the batch before end
 };
 
 /// The domains of a box of cells, with their own copy of the corners in rows (BrickLayout).
@@ -44,9 +45,6 @@ struct Brick {
 struct BrickFields {
     const double* in[3];  // corner positions x or displacements u [m]
     double* out[3];       // added to: gradient [N], product K u [N], or the diagonal of K [N/m]
-    double* out_right
-        [3];  // the same for corners on the right of a domain, one entry to the left of their place: a sum
-    // that overlaps the one just stored would wait for it to reach the cache
 };
 
 /// ∂E/∂x is added to `out`; returns the energy E = Σ V Ψ(F) + E_hg [J], +infinity where a law forbids the state.
@@ -67,7 +65,7 @@ void add_brick_diagonal(const Brick& brick, double edge, const BrickFields& fiel
 /// ElasticEnergy::stiffening() of a brick.
 double brick_stiffening(const Brick& brick, double edge, const BrickFields& fields);
 
-/// J = det F of each slot of a batch at corners `in`; 1 for empty slots.
-Lanes brick_J(const Brick& brick, int batch, double edge, const BrickFields& fields);
+/// J = det F of each slot (#batches) at corners `in`; 1 for empty slots.
+void find_J(const Brick& brick, double edge, const BrickFields& fields, Lanes* J);
 
 }  // namespace sim

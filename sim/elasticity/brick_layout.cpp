@@ -52,12 +52,13 @@ struct Slot {
     int domain;
 };
 
-bool is_in(const Batch& batch, const Slot& slot) {
+/// How far behind a batch's first domain one stands, the same in all rows; less than 0 where rows differ in it.
+int lane_of(const Slot& slot, const Batch& batch) {
     const int lane = slot.row[0] - batch.row[0];
     for (int r = 0; r < 4; ++r)
         if (slot.row[r] - batch.row[r] != lane)
-            return false;
-    return lane < lane_count;
+            return -1;
+    return lane;
 }
 
 std::vector<Batch> batches_of(std::vector<Slot> slots) {
@@ -66,11 +67,17 @@ std::vector<Batch> batches_of(std::vector<Slot> slots) {
     });
     std::vector<Batch> batches;
     for (const Slot& slot : slots) {
-        if (batches.empty() || !is_in(batches.back(), slot)) {
-            batches.push_back({slot.row, {}});
-            batches.back().domain.fill(-1);
+        int lane = batches.empty() ? -1 : lane_of(slot, batches.back());
+        if (lane < 0 || lane >= lane_count) {
+            Batch next{slot.row, {}, lane >= lane_count && lane < 2 * lane_count};
+            next.domain.fill(-1);
+            if (next.continues)
+                for (int r = 0; r < 4; ++r)
+                    next.row[r] = batches.back().row[r] + lane_count;
+            lane = lane_of(slot, next);
+            batches.push_back(next);
         }
-        batches.back().domain[slot.row[0] - batches.back().row[0]] = slot.domain;
+        batches.back().domain[lane] = slot.domain;
     }
     return batches;
 }

@@ -131,7 +131,7 @@ void Elasticity::fill_brick(const Lattice& lattice,
     Brick brick;
     const BrickLayout layout = best_brick_layout(lattice, domains);
     const int n_places = static_cast<int>(layout.corner.size());
-    brick.n_local = (n_places / lane_count + 2) * lane_count;  // whole batches
+    brick.n_local = (n_places / lane_count + 3) * lane_count;  // whole batches, and one after the last
     brick.first_local = static_cast<int>(corner_of_local_.size());
     corner_of_local_.insert(corner_of_local_.end(), layout.corner.begin(), layout.corner.end());
     corner_of_local_.resize(brick.first_local + brick.n_local, -1);
@@ -188,10 +188,8 @@ BrickFields Elasticity::Scratch::fields(int n_local) {
     for (int i = 0; i < 3; ++i) {
         in[i].resize(n_local);
         out[i].resize(n_local);
-        out_right[i].resize(n_local + 1);
         fields.in[i] = in[i].data();
         fields.out[i] = out[i].data();
-        fields.out_right[i] = out_right[i].data() + 1;
     }
     return fields;
 }
@@ -217,7 +215,7 @@ void Elasticity::store(const Brick& brick, const Scratch& scratch, Vec3p* values
         Vec3p row[lane_count] = {};
         fetch_ahead<true>(values, corner, l, brick.n_local);
         for (int i = 0; i < 3; ++i)
-            row[i] = load_lanes(&scratch.out[i][l]) + load_lanes(&scratch.out_right[i][l]);
+            row[i] = load_lanes(&scratch.out[i][l]);
         transpose(row);
         for (int k = 0; k < lane_count; ++k)
             if (const int c = corner[l + k]; c >= 0)
@@ -237,9 +235,8 @@ double Elasticity::for_bricks(const Vec3p* in, Vec3p* out, const Kernel& kernel)
             if (in != nullptr)
                 load(brick, in, scratch);
             if (out != nullptr)
-                for (auto* arrays : {&scratch.out, &scratch.out_right})
-                    for (auto& array : *arrays)
-                        std::fill(array.begin(), array.end(), 0.0);
+                for (auto& array : scratch.out)
+                    std::fill(array.begin(), array.end(), 0.0);
             const double value = kernel(brick, fields);
             if (out != nullptr)
                 store(brick, scratch, out);
@@ -294,17 +291,19 @@ double Elasticity::stiffening(const Vec3p* x) const {
 Elasticity::SmallestJ Elasticity::smallest_J(const Vec3p* x) const {
     SmallestJ smallest{2e300, -1};
     Scratch scratch;
+    std::vector<Lanes> J;
     for (const Brick& brick : bricks_) {
         const BrickFields fields = scratch.fields(brick.n_local);
         load(brick, x, scratch);
-        for (std::size_t b = 0; b < brick.batch.size(); ++b) {
-            const Lanes J = brick_J(brick, static_cast<int>(b), edge_, fields);
+        J.resize(brick.batch.size());
+        find_J(brick, edge_, fields, J.data());
+        for (std::size_t b = 0; b < brick.batch.size(); ++b)
             for (int l = 0; l < lane_count; ++l)
                 if (const int p = brick.batch[b].domain[l];
                     p >= 0
-                    && (!(J[l] >= smallest.J) || (J[l] == smallest.J && p < smallest.domain)))
-                    smallest = {J[l], p};
-        }
+                    && (!(J[b][l] >= smallest.J)
+                        || (J[b][l] == smallest.J && p < smallest.domain)))
+                    smallest = {J[b][l], p};
     }
     return smallest;
 }

@@ -33,9 +33,7 @@ class Elasticity : public ElasticEnergy {
   private:
     /// A brick's corners and sums as its kernels want them, small enough for the second-level cache.
     struct Scratch {
-        // Per component, #local. A corner's share of out_right is one place further than in
-        // BrickFields: beside that of `out`.
-        std::array<std::vector<double>, 3> in, out, out_right;
+        std::array<std::vector<double>, 3> in, out;  // per component, #local
 
         BrickFields fields(int n_local);
     };

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <numeric>
 #include <set>
 
@@ -35,7 +36,10 @@ TEST_CASE(
     const sim::BrickLayout layout = layout_of(lattice);
 
     std::set<int> domains;
-    for (const sim::Batch& batch : layout.batches)
+    for (std::size_t b = 0; b < layout.batches.size(); ++b) {
+        const sim::Batch& batch = layout.batches[b];
+        for (int r = 0; r < 4 && batch.continues; ++r)
+            REQUIRE(batch.row[r] == layout.batches.at(b - 1).row[r] + sim::lane_count);
         for (int lane = 0; lane < sim::lane_count; ++lane) {
             const int p = batch.domain[lane];
             if (p < 0)
@@ -45,6 +49,7 @@ TEST_CASE(
             REQUIRE(corners_in_rows(layout, batch, lane)
                     == std::set<int>(corners.begin(), corners.end()));
         }
+    }
     REQUIRE(static_cast<int>(domains.size()) == lattice.n_domains());
     const std::set<int> met(layout.corner.begin(), layout.corner.end());
     REQUIRE(met.size() == layout.corner.size());
@@ -58,4 +63,8 @@ TEST_CASE("batches of a brick go on from one row to the next where rows are equa
     // A layer of z has three rows of 5 domains, each with 6 corners: 17 places from the first to the last. Row by row it would
     // take two batches of four each.
     REQUIRE(layout.batches.size() == 2 * ((17 + sim::lane_count - 1) / sim::lane_count));
+    REQUIRE(std::count_if(layout.batches.begin(),
+                          layout.batches.end(),
+                          [](const sim::Batch& batch) { return !batch.continues; })
+            == 2);
 }
