@@ -25,7 +25,7 @@ Worst most_compressed(Assembly& assembly, const Stepper& stepper, const Field& x
         AssembledBody& body = assembly.bodies[b];
         if (body.points) {
             const auto found = stepper.points(static_cast<int>(b))->smallest_trial_J();
-            if (found.point >= 0 && found.J < worst.J)
+            if (found.point >= 0 && is_worse(found.J, worst.J))
                 worst = {static_cast<int>(b),
                          found.point,
                          found.J,
@@ -33,7 +33,7 @@ Worst most_compressed(Assembly& assembly, const Stepper& stepper, const Field& x
             continue;
         }
         const auto found = body.elasticity->smallest_J(&x[body.begin]);
-        if (found.domain < 0 || !(found.J < worst.J))
+        if (found.domain < 0 || !is_worse(found.J, worst.J))
             continue;
         Vec3 place = Vec3::Zero();
         for (const int c : body.lattice.corners[found.domain])
@@ -52,7 +52,7 @@ std::string cause(const Scene& scene, const NewtonSummary& summary, double dt, d
             "one linearised solve is not enough for such a motion in a step of {:g} s; "
             "try --set solver.steps=implicit, or a smaller solver.dt",
             dt);
-    if (summary.termination == Termination::NotFinite || J <= 0)
+    if (summary.termination == Termination::NotFinite || !(J > 0))
         return dt > 0 ? fmt::format(
                    "pins or speeds squash domains flat within one step; try --set "
                    "solver.dt={:g}",

@@ -125,7 +125,7 @@ class ModesOfCorners {
 
     const Brick& brick_;
     const BrickFields& fields_;
-    Four next_[3];
+    Four next_[3] = {};
 };
 
 /// Sums at the corners of a brick of what modes give to them, batch by batch.

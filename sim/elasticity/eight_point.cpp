@@ -147,7 +147,7 @@ EightPoint::SmallestJ EightPoint::smallest_J(const Vec3p* x) const {
     SmallestJ smallest{2e300, -1};
     for (std::size_t p = 0; p < domains_.size(); ++p) {
         const double J = fbar_smallest_J(gradients_, values_of(static_cast<int>(p), x));
-        if (!(J >= smallest.J))
+        if (is_worse(J, smallest.J))
             smallest = {J, static_cast<int>(p)};
     }
     return smallest;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/base/field.h"
+#include "sim/base/volume_ratio.h"
 #include "sim/lattice/lattice.h"
 #include "sim/scene.h"
 
@@ -38,7 +39,7 @@ class ElasticEnergy {
         int domain = -1;
     };
 
-    /// The smallest det F at any quadrature point.
+    /// The smallest det F at any quadrature point, or the first that is no number.
     virtual SmallestJ smallest_J(const Vec3p* x) const = 0;
 };
 

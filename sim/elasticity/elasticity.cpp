@@ -301,7 +301,7 @@ Elasticity::SmallestJ Elasticity::smallest_J(const Vec3p* x) const {
             for (int l = 0; l < lane_count; ++l)
                 if (const int p = brick.batch[b].domain[l];
                     p >= 0
-                    && (!(J[b][l] >= smallest.J)
+                    && (is_worse(J[b][l], smallest.J)
                         || (J[b][l] == smallest.J && p < smallest.domain)))
                     smallest = {J[b][l], p};
     }

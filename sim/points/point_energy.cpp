@@ -1,6 +1,7 @@
 #include "sim/points/point_energy.h"
 
 #include "sim/base/parallel.h"
+#include "sim/base/volume_ratio.h"
 #include "sim/materials/law.h"
 #include "sim/points/plasticity.h"
 
@@ -214,7 +215,7 @@ double PointEnergy::energy(const PointState& state) const {
 PointEnergy::SmallestJ PointEnergy::smallest_trial_J() const {
     SmallestJ smallest{std::numeric_limits<double>::infinity(), -1};
     for (int p = 0; p < points_.size(); ++p)
-        if (const double J = determinant(F_next_[p]); !(J >= smallest.J))
+        if (const double J = determinant(F_next_[p]); is_worse(J, smallest.J))
             smallest = {J, p};
     return smallest;
 }

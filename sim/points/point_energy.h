@@ -60,7 +60,7 @@ class PointEnergy : public GridEnergy {
         int point = -1;
     };
 
-    /// Of the elastic F where all was last taken to.
+    /// Of the elastic F where all was last taken to, or the first that is no number.
     SmallestJ smallest_trial_J() const;
 
   private:

@@ -224,3 +224,21 @@ TEST_CASE("an inverted domain of the log law is forbidden, and found") {
     CHECK(smallest.J == Approx(-1));
     CHECK(smallest.domain == 0);
 }
+
+TEST_CASE("what is no number is the smallest J, whatever comes after it") {
+    const Block b = block({12, 1, 1});
+    Field x;
+    for (const Vec3& X : b.lattice.corner_rest)
+        x.push_back(sim::padded(X));
+    const int broken = 5;
+    for (const int c : b.lattice.corners[broken])
+        if (b.lattice.corner_rest[c].x() > 0.55)
+            x[c][0] = std::numeric_limits<double>::quiet_NaN();
+    for (const sim::Quadrature quadrature :
+         {sim::Quadrature::OnePoint, sim::Quadrature::EightPoint}) {
+        const auto smallest =
+            sim::make_elastic_energy(b.lattice, b.body, quadrature)->smallest_J(x.data());
+        CHECK(std::isnan(smallest.J));
+        CHECK((smallest.domain == broken || smallest.domain == broken + 1));
+    }
+}
