@@ -370,11 +370,14 @@ void Stepper::kick_nodes(const State& state, double dt) {
 }
 
 void Stepper::set_explicit_reactions(const State& state, double dt) {
-    // Force of the pin on a corner: m dv/dt - f + ∂Φ/∂x, by the mean along the step. Only of pinned corners.
+    // Force of the pin on a corner: m (dv/dt + damping v) - f + ∂Φ/∂x, by the mean along the step. Only of pinned corners.
     reaction_.resize(state.x.size());
     for (std::size_t i = 0; i < prescribed_.corners.size(); ++i) {
         const int c = prescribed_.corners[i];
-        const Vec3p inertia = assembly_.mass[c] * (v_end_[c] - state.v[c]) / dt;
+        const Vec3p v = (x_end_[c] - state.x[c]) / dt;
+        const Vec3p inertia =
+            assembly_.mass[c]
+            * ((v_end_[c] - state.v[c]) / dt + scene_.solver.damping * v);
         const Vec3p gradient =
             (0.5 * (gradient_[c] + end_gradient_[c]) + inner_gradient_[i]) / n_drifts_;
         reaction_[c] = (inertia - assembly_.force[c] + gradient)

@@ -1,7 +1,5 @@
 #include "sim/pinned_nodes.h"
 
-#include "sim/pinning.h"
-
 #include <algorithm>
 
 namespace sim {
@@ -47,16 +45,16 @@ std::vector<PinnedNode> pinned_nodes(const Scene& scene,
                 continue;
             if (entry_of_dof[i] < 0) {
                 entry_of_dof[i] = static_cast<int>(result.size());
-                result.push_back({i, 0, Vec3p{1, 1, 1, 0}, Vec3p{}});
+                result.push_back({i, held_by_none, Vec3p{1, 1, 1, 0}, Vec3p{}});
             }
             PinnedNode& node = result[entry_of_dof[i]];
-            node.pin = static_cast<int>(k);
             const Vec3 at = unpadded(map.dof_position()[i]);
             const Vec3 velocity = (pinned_position(pin, at, moves) - at) / length;
             for (int axis = 0; axis < 3; ++axis)
                 if (pin.only[axis]) {
                     node.is_free[axis] = 0;
                     node.velocity[axis] = velocity[axis];
+                    node.holder[axis] = static_cast<int>(k);
                 }
         }
     }

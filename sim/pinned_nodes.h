@@ -3,14 +3,16 @@
 
 #include "sim/assembly.h"
 #include "sim/grid/corner_map.h"
+#include "sim/pinning.h"
 
 #include <vector>
 
 namespace sim {
 
-/// A node that a pin holds in a step.
+/// A node that pins hold in a step.
 struct PinnedNode {
-    int dof = 0, pin = 0;
+    int dof = 0;
+    HeldBy holder = held_by_none;
     Vec3p is_free{};   // 0 in held components
     Vec3p velocity{};  // in these [m/s]
 };

@@ -35,10 +35,10 @@ void prescribe(const Scene& scene,
     auto& [is_free, target, holder, corners] = prescribed;
     is_free.resize(assembly.n_corners(), Vec3p{1, 1, 1, 0});
     target.resize(assembly.n_corners());
-    holder.resize(assembly.n_corners(), -1);
+    holder.resize(assembly.n_corners(), held_by_none);
     for (const int c : corners) {
         is_free[c] = Vec3p{1, 1, 1, 0};
-        holder[c] = -1;
+        holder[c] = held_by_none;
     }
     corners.clear();
     for (std::size_t k = 0; k < scene.pins.size(); ++k) {
@@ -48,14 +48,14 @@ void prescribe(const Scene& scene,
         for (const int c : assembly.pins[k].corners) {
             const Vec3 to =
                 pinned_position(pin, unpadded(assembly.rest[c]), std::min(time_end, pin.until));
+            if (holder[c] == held_by_none)
+                corners.push_back(c);
             for (int axis = 0; axis < 3; ++axis)
                 if (pin.only[axis]) {
                     is_free[c][axis] = 0;
                     target[c][axis] = to[axis];
+                    holder[c][axis] = static_cast<int>(k);
                 }
-            if (holder[c] < 0)
-                corners.push_back(c);
-            holder[c] = static_cast<int>(k);
         }
     }
     std::sort(corners.begin(), corners.end());

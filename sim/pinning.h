@@ -3,16 +3,20 @@
 
 #include "sim/assembly.h"
 
+#include <array>
 #include <vector>
 
 namespace sim {
+
+/// The pin that holds each component of a corner or a node, -1 where none does.
+using HeldBy = std::array<int, 3>;
+inline constexpr HeldBy held_by_none = {-1, -1, -1};
 
 /// Which components are prescribed at a step, where they go, and which pin holds them.
 struct Prescribed {
     Field is_free;  // (#C) 1 in free components, 0 in prescribed ones
     Field target;   // (#C) position at the end of the step in prescribed components [m]
-    std::vector<int>
-        holder;  // (#C) the last pin that holds a component of the corner, -1 for none
+    std::vector<HeldBy> holder;  // (#C)
     std::vector<int> corners;  // those with a prescribed component, in order
 };
 

@@ -116,7 +116,7 @@ void Stepper::set_node_reactions(const std::function<Vec3p(int, int)>& force_on)
         const Vec3p force =
             force_on(static_cast<int>(k), node.dof) * (Vec3p{1, 1, 1, 0} - node.is_free);
         node_reactions_.push_back(
-            {node.pin, unpadded(map_.dof_position()[node.dof]), unpadded(force)});
+            {node.holder, unpadded(map_.dof_position()[node.dof]), unpadded(force)});
     }
 }
 

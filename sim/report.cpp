@@ -165,18 +165,20 @@ std::vector<PinRow> pins_of(const Scene& scene,
         PinRow row;
         row.name = scene.pins[k].name;
         const Vec3 about = moment_point(scene.pins[k], assembly.pins[k], state.x);
-        for (const int c : assembly.pins[k].corners) {
-            if (stepper.prescribed().holder[c] != static_cast<int>(k))
-                continue;
-            const Vec3 force = unpadded(stepper.reaction()[c]);
+        const auto add = [&](const HeldBy& holder, const Vec3& at, const Vec3& reaction) {
+            Vec3 force = Vec3::Zero();
+            for (int axis = 0; axis < 3; ++axis)
+                if (holder[axis] == static_cast<int>(k))
+                    force[axis] = reaction[axis];
             row.force += force;
-            row.moment += (unpadded(state.x[c]) - about).cross(force);
-        }
-        for (const Stepper::NodeReaction& node : stepper.node_reactions())
-            if (node.pin == static_cast<int>(k)) {
-                row.force += node.force;
-                row.moment += (node.at - about).cross(node.force);
-            }
+            row.moment += (at - about).cross(force);
+        };
+        for (const int c : assembly.pins[k].corners)
+            add(stepper.prescribed().holder[c],
+                unpadded(state.x[c]),
+                unpadded(stepper.reaction()[c]));
+        for (const auto& [holder, at, reaction] : stepper.node_reactions())
+            add(holder, at, reaction);
         rows.push_back(row);
     }
     return rows;

@@ -78,9 +78,9 @@ class Stepper {
 
     const Prescribed& prescribed() const { return prescribed_; }
 
-    /// What a pin does to a node of a body of points.
+    /// What pins do to a node of a body of points.
     struct NodeReaction {
-        int pin = 0;
+        HeldBy holder = held_by_none;
         Vec3 at{0, 0, 0}, force{0, 0, 0};  // [m], [N]
     };
 

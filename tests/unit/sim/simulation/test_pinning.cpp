@@ -1,8 +1,11 @@
 #include "sim/pinning.h"
 #include "sim/simulation.h"
 #include "tests/support/bar_scene.h"
+#include "tests/support/soft_block.h"
 
 #include <catch2/catch.hpp>
+
+#include <string>
 
 namespace {
 
@@ -71,7 +74,10 @@ TEST_CASE("later pins win, axis by axis") {
     for (int c = 0; c < assembly.n_corners(); ++c) {
         const Vec3 rest = sim::unpadded(assembly.rest[c]);
         const bool at_end = rest.x() < 0.05, is_held = rest.x() < 0.15;
-        CHECK(prescribed.holder[c] == (at_end ? 1 : is_held ? 0 : -1));
+        const sim::HeldBy expected = at_end    ? sim::HeldBy{0, 0, 1}
+                                     : is_held ? sim::HeldBy{0, 0, 0}
+                                               : sim::held_by_none;
+        CHECK(prescribed.holder[c] == expected);
         const Vec3 target = rest + Vec3(0, 0, at_end ? 0.25 : 0);
         if (is_held)
             CHECK((sim::unpadded(prescribed.target[c]) - target).norm() == 0);
@@ -97,7 +103,7 @@ TEST_CASE("a pin holds the chosen axes, to the moment of its release") {
     sim::prescribe(scene, assembly, 1, 1.1, reused);
     CHECK(reused.corners.empty());
     for (int k = 0; k < assembly.n_corners(); ++k) {
-        CHECK(reused.holder[k] == -1);
+        CHECK(reused.holder[k] == sim::held_by_none);
         CHECK(reused.is_free[k][1] == 1);
     }
 }
@@ -120,4 +126,49 @@ TEST_CASE(
     CAPTURE(start.transpose(), later.transpose());
     CHECK((start.norm() > 1) == (steps == sim::Steps::Implicit));
     CHECK((later - start).norm() <= 1e-3 * start.norm());
+}
+
+TEST_CASE("where several pins hold a body each tells what it does along its own axes") {
+    // A block in a corner of three faces that may slide on each, pulled away from one of them.
+    sim::Scene scene;
+    scene.solver.method = GENERATE(sim::Method::Fem, sim::Method::Mpm);
+    scene.solver.dt = 5e-3;
+    scene.solver.damping = 50;
+    scene.bodies = {tests::soft_block("block", {0, 0, 0}, {0.3, 0.3, 0.3}, 0.1, 1e6)};
+    for (int axis = 0; axis < 3; ++axis) {
+        sim::Pin face;
+        face.name = std::string(1, "xyz"[axis]);
+        face.body = "block";
+        face.select.is = sim::Selector::HalfSpace{Vec3::Constant(0.01), Vec3::Unit(axis)};
+        face.only = {axis == 0, axis == 1, axis == 2};
+        scene.pins.push_back(face);
+    }
+    scene.forces = {sim::DeadLoad{
+        "block", {sim::Selector::HalfSpace{{0.29, 0, 0}, {-1, 0, 0}}, {}}, {100, 0, 0}}};
+    sim::Simulation simulation(scene, 1.0 / 24);
+    simulation.advance_to(0.5);
+    const std::vector<sim::PinRow> pins = simulation.pins();
+    for (int k = 0; k < 3; ++k)
+        for (int axis = 0; axis < 3; ++axis) {
+            CAPTURE(k, axis);
+            CHECK(pins[k].force[axis]
+                  == Approx(k == 0 && axis == 0 ? -100 : 0).epsilon(1e-3).margin(1e-2));
+        }
+}
+
+TEST_CASE("a pin that moves a body evenly pays for damping") {
+    // c m v: what no inertia and no stress asks for.
+    sim::Scene scene;
+    scene.solver.steps = GENERATE(sim::Steps::Implicit, sim::Steps::Bdf2, sim::Steps::Explicit);
+    scene.solver.method = sim::Method::Fem;
+    scene.solver.dt = 1e-3;
+    scene.solver.damping = 10;
+    scene.bodies = {tests::soft_block("block", {0, 0, 0}, {0.2, 0.2, 0.2}, 0.1, 1e6)};
+    scene.bodies[0].velocity = {2, 0, 0};
+    scene.pins = {{"all", "block", {sim::Selector::All{}, {}}, sim::Pin::Velocity{{2, 0, 0}}}};
+    sim::Simulation simulation(scene, 1.0 / 24);
+    simulation.advance_to(0.1);
+    CAPTURE(int(scene.solver.steps));
+    CHECK(simulation.pins()[0].force.x()
+          == Approx(10 * simulation.stats().total_mass * 2).epsilon(1e-9));
 }
