@@ -99,7 +99,7 @@ void Stepper::make_map(State& state, const Field& x) {
         return keep_map(state, x);
     free_.resize(x.size());
     for (std::size_t b = 0; b < ranges_.size(); ++b)
-        choose_free_corners(static_cast<int>(b), x);
+        choose_free_corners(static_cast<int>(b), state.x);
     map_.rebuild(x, free_, ranges_);
 }
 

@@ -98,11 +98,17 @@ std::vector<sim::Collider> read_colliders(TableReader& root, int first_frame, do
     return colliders;
 }
 
-sim::Contact read_contact(TableReader table, const std::vector<sim::Body>& bodies) {
+sim::Contact read_contact(TableReader table,
+                          const std::vector<sim::Body>& bodies,
+                          sim::Steps steps) {
     using Mode = sim::Contact::Mode;
     sim::Contact contact;
     contact.mode = table.choice<Mode>(
         "mode", {{"surface", Mode::Surface}, {"grid", Mode::Grid}}, {}, "surface");
+    if (contact.mode == Mode::Grid && steps == sim::Steps::Static)
+        table.error("mode",
+                    "'mode' = 'grid' meets velocities, and 'steps' = 'static' has none: use "
+                    "'surface'");
     contact.friction = read_friction(table);
     for (TableReader& pair : table.tables("pair")) {
         contact.pairs.push_back({{pair.reference("body", "body", names_of(bodies)),

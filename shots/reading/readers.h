@@ -96,7 +96,9 @@ std::vector<sim::Probe> read_probes(TableReader& root, const std::vector<sim::Bo
 std::vector<sim::Collider> read_colliders(TableReader& root, int first_frame, double fps);
 
 /// [contact]
-sim::Contact read_contact(TableReader table, const std::vector<sim::Body>& bodies);
+sim::Contact read_contact(TableReader table,
+                          const std::vector<sim::Body>& bodies,
+                          sim::Steps steps);
 
 /// frames = "1-48"
 FrameRange read_frames(TableReader& root);

@@ -248,7 +248,11 @@ TEST_CASE("static steps need the method fem") {
     const auto lines = mistakes_of(text);
     REQUIRE(lines.size() == 1);
     CHECK_THAT(lines.front(), StartsWith("9:10: ") && Contains("fem"));
-    CHECK(mistakes_of(with(text, "\"enriched\"", "\"fem\"")).empty());
+    const std::string of_fem = with(text, "\"enriched\"", "\"fem\"");
+    CHECK(mistakes_of(of_fem).empty());
+    const auto on_grid = mistakes_of(of_fem + "\n[contact]\nmode = \"grid\"\n");
+    REQUIRE(on_grid.size() == 1);
+    CHECK_THAT(on_grid.front(), Contains("'mode' = 'grid' meets velocities"));
 }
 
 TEST_CASE("all mistakes come in one pass, in the order of the file") {

@@ -138,3 +138,30 @@ TEST_CASE("single linearised solves make no energy where a cube hits what stands
     CHECK(energy(simulation.stats()) < 0.9 * start);  // it has met
     CHECK(simulation.probes()[0].position.z() > 0.05);
 }
+
+TEST_CASE("how many equilibria lead to it changes nothing in how bodies are pressed together") {
+    // Two cubes, the upper one moved down onto the lower one by a tenth of an edge, in one step or in seven.
+    sim::Scene scene;
+    scene.solver.method = sim::Method::Fem;
+    scene.solver.steps = sim::Steps::Static;
+    scene.bodies = {cube("lower", {0, 0, 0}, 0.4, 4, 1e5),
+                    cube("upper", {0, 0, 0.41}, 0.4, 4, 1e5)};
+    scene.pins = {
+        {"floor", "lower", {sim::Selector::HalfSpace{{0, 0, 0.01}, {0, 0, 1}}, {}}, {}},
+        {"ram",
+         "upper",
+         {sim::Selector::HalfSpace{{0, 0, 0.8}, {0, 0, -1}}, {}},
+         sim::Pin::Velocity{{0, 0, -0.05}}}};
+    double force[2], depth[2];
+    for (const int n : {1, 7}) {
+        sim::Simulation simulation(scene, frame_time);
+        for (int k = 1; k <= n; ++k)
+            simulation.advance_to(1.0 * k / n);
+        force[n > 1] = simulation.pins()[0].force.z();
+        depth[n > 1] = simulation.stats().penetration;
+    }
+    CHECK(force[0] > 100);
+    CHECK(force[1] == Approx(force[0]).epsilon(1e-3));
+    CHECK(depth[0] > 1e-4);
+    CHECK(depth[1] == Approx(depth[0]).epsilon(0.02));
+}
