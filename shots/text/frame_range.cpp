@@ -3,7 +3,6 @@
 #include "assets/base/error.h"
 
 #include <charconv>
-#include <cstdlib>
 #include <fmt/format.h>
 #include <set>
 
@@ -23,7 +22,8 @@ constexpr int largest_number =
 /// Reads an integer at the start of `rest` and drops it from there; false where there is none.
 bool take_integer(std::string_view& rest, int& number) {
     const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
-    if (error == std::errc::result_out_of_range || std::abs(number) > largest_number)
+    if (error == std::errc::result_out_of_range || number > largest_number
+        || number < -largest_number)
         refuse(rest, fmt::format("numbers go from -{0} to {0}", largest_number));
     if (error != std::errc{})
         return false;

@@ -86,7 +86,7 @@ TEST_CASE("frame ranges") {
     CHECK(parse_frame_range("-5--4").numbers() == std::vector{-5, -4});
     CHECK(parse_frame_list("5, 1-3 2,9-11x2") == std::vector{1, 2, 3, 5, 9, 11});
     for (const char* text :
-         {"", "a", "1-", "3-1", "1-4x0", "1-4x", "1-4y", "1 - 4", "99999999999"})
+         {"", "a", "1-", "3-1", "1-4x0", "1-4x", "1-4y", "1 - 4", "99999999999", "-2147483648"})
         CHECK_THROWS_AS(parse_frame_range(text), assets::Error);
     CHECK_THROWS_AS(parse_frame_list(" , "), assets::Error);
     CHECK_THROWS_WITH(parse_frame_list("1-99999999999"),
