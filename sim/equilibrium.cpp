@@ -14,7 +14,13 @@ constexpr int most_halvings = 8;  // of the way to an equilibrium
 
 }  // namespace
 
-void Stepper::equilibrium(State& state, double time) {
+void Stepper::equilibrium(State& state,
+                          double time,
+                          const std::function<void(double)>& watch) {
+    watch_ = [&] {
+        if (watch)
+            watch(state.time);
+    };
     // The whole way in one solve, else in halves.
     double begin = state.time, length = time - state.time;
     int halvings = 0;
@@ -22,6 +28,7 @@ void Stepper::equilibrium(State& state, double time) {
         NewtonSummary summary;
         const double end = halvings == 0 ? time : std::min(time, begin + length);
         if (try_equilibrium(state, begin, end, summary)) {
+            watch_();
             if (end >= time)
                 break;
             begin = end;
@@ -64,6 +71,7 @@ bool Stepper::try_equilibrium(State& state,
     options.tolerance = static_tolerance;
     options.first_forcing = 0.1;
     options.max_iterations = 200;
+    options.before_iteration = watch_;
     if (!surfaces_.empty()) {
         const SurfaceContact::Start start = {state.x, state.v, state.top_speed, state.contacts};
         surfaces_.see(start);
@@ -76,6 +84,7 @@ bool Stepper::try_equilibrium(State& state,
         return false;
 
     state.x = potential_.positions();
+    state.contacts = surfaces_.held(state.x);
     state.v.assign(state.x.size(), Vec3p{});
     state.time = time_end;
     reaction_.assign(state.x.size(), Vec3p{});

@@ -56,6 +56,7 @@ bool Stepper::solve_step(State& state, double dt, Scheme scheme) {
 
     NewtonOptions options;
     options.tolerance = dynamic_tolerance;
+    options.before_iteration = watch_;
     if (scene_.solver.steps == Steps::SemiImplicit) {
         options.max_iterations = 1;
         options.line_search = false;

@@ -80,14 +80,14 @@ Simulation::Simulation(Scene scene, double frame_time)
 
 Simulation::~Simulation() = default;
 
-void Simulation::advance_to(double time, const std::function<void(double)>& after_step) {
+void Simulation::advance_to(double time, const std::function<void(double)>& watch) {
     Stepper& stepper = impl_->stepper;
     State& state = impl_->state;
     stepper.newton_iterations = stepper.cg_iterations = stepper.steps = 0;
     if (impl_->scene.solver.steps == Steps::Static)
-        stepper.equilibrium(state, time);
+        stepper.equilibrium(state, time, watch);
     else
-        stepper.advance(state, time, impl_->dt, after_step);
+        stepper.advance(state, time, impl_->dt, watch);
 }
 
 double Simulation::time() const {

@@ -52,9 +52,9 @@ class Simulation {
     ~Simulation();
 
     /// Steps until `time` in steps no longer than dt, halved where they fail; `Steps::Static`: equilibrium of the loads then.
-    /// Throws Error(Diverged) naming place, body, region and likely cause, and whatever `after_step` throws, which is told
-    /// the time after each step, also one that failed: then only restore() goes on.
-    void advance_to(double time, const std::function<void(double time)>& after_step = {});
+    /// Throws Error(Diverged) naming place, body, region and likely cause, and whatever `watch` throws, which is told the time
+    /// that has been reached, after each step and before each of Newton's iterations: then only restore() goes on.
+    void advance_to(double time, const std::function<void(double time)>& watch = {});
 
     double time() const;
     const Scene& scene() const;

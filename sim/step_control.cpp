@@ -24,7 +24,11 @@ constexpr int quiet_per_drift = 2;       // since the last touch, for each drift
 void Stepper::advance(State& state,
                       double end,
                       double dt,
-                      const std::function<void(double)>& after_step) {
+                      const std::function<void(double)>& watch) {
+    watch_ = [&] {
+        if (watch)
+            watch(state.time);
+    };
     failures.clear();
     measure_speed(state);
     if (scene_.solver.steps == Steps::Explicit)
@@ -32,8 +36,7 @@ void Stepper::advance(State& state,
     try {
         while (state.time < end) {
             go_on(state, end, dt);
-            if (after_step)
-                after_step(state.time);
+            watch_();
         }
     } catch (const FlownApart&) {
         throw diagnose_flown_apart(scene_, assembly_, state);

@@ -29,15 +29,18 @@ class Stepper {
     /// Steps by solver.steps until state.time is `end`, in steps no longer than dt, nor than failures and stability
     /// allow: a step that fails is halved, and grows back slowly. Explicit steps are longer while no surfaces touch: kicks
     /// and drifts, no longer than that, are repeated under one map T as long as no slaved corner goes far in the cells of
-    /// the grid. Throws Error(Diverged) where halving does not help.
+    /// the grid. `watch` is told how far it has come, after each step and on the way of each solve, and may throw. Throws
+    /// Error(Diverged) where halving does not help.
     void advance(State& state,
                  double end,
                  double dt,
-                 const std::function<void(double time)>& after_step);
+                 const std::function<void(double time)>& watch);
 
     /// Equilibrium of the loads at `time`, reached from `state` by moving the pins there; velocities become zero.
     /// Where the way is too long for one solve it is halved. Throws Error(Diverged).
-    void equilibrium(State& state, double time);
+    void equilibrium(State& state,
+                     double time,
+                     const std::function<void(double time)>& watch = {});
 
     /// Recomputes degrees of freedom and pin reactions for a state that no step has led to (start, restart).
     void refresh(State& state);
@@ -244,6 +247,7 @@ class Stepper {
     IncrementalPotential potential_;
     NewtonScratch scratch_;
     NewtonSummary summary_;  // of the last solve
+    std::function<void()> watch_;  // of the call of advance() or equilibrium()
     Prescribed prescribed_;
     std::vector<char> free_;            // (#C)
     bool moves_grid_ = false;           // whether the grid is a MovingGrid

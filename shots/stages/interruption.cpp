@@ -11,6 +11,8 @@ volatile std::sig_atomic_t interrupted = 0;
 
 void note_interruption(int) {
     interrupted = 1;
+    for (const int number : {SIGINT, SIGTERM})  // the second one acts as usual
+        std::signal(number, SIG_DFL);
 }
 
 }  // namespace
@@ -18,8 +20,7 @@ void note_interruption(int) {
 void catch_interruptions() {
     struct sigaction action = {};
     action.sa_handler = note_interruption;
-    action.sa_flags =
-        SA_RESTART | static_cast<int>(SA_RESETHAND);  // the second signal acts as usual
+    action.sa_flags = SA_RESTART;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
 }

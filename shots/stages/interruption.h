@@ -6,8 +6,7 @@ namespace shots {
 /// From now on the first SIGINT or SIGTERM only sets a flag; a second one ends the program at once.
 void catch_interruptions();
 
-/// Throws Error(Interrupted) where such a signal has come. Stages call it where
-/// what they have saved is whole.
+/// Throws Error(Interrupted) where such a signal has come. Stages call it where what they have saved is whole.
 void stop_if_interrupted();
 
 }  // namespace shots

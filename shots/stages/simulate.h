@@ -33,7 +33,7 @@ std::filesystem::path cache_folder(const std::filesystem::path& folder);
 /// Interrupted and resumed, all files end up the same bytes as in one go, but for the column "seconds".
 ///
 /// Throws Error(Input) where the cache belongs to another fingerprint (nothing is touched then), Error(Interrupted)
-/// between two frames after a signal (see interruption.h), and whatever the simulation and the cache throw.
+/// soon after a signal, with the frame at hand given up (see interruption.h), and whatever the simulation and the cache throw.
 void simulate(const SimulateJob& job, Progress& progress);
 
 }  // namespace shots

@@ -153,6 +153,8 @@ NewtonSummary minimize(Potential& potential,
             return end(std::isfinite(norm) ? Termination::Converged : Termination::NotFinite);
         if (summary.iterations == options.max_iterations)
             return end(Termination::IterationLimit);
+        if (options.before_iteration)
+            options.before_iteration();
 
         if (!linearized)
             potential.linearize(q, project);

@@ -3,6 +3,7 @@
 
 #include "sim/solver/conjugate_gradients.h"
 
+#include <functional>
 #include <string>
 
 namespace sim {
@@ -13,6 +14,7 @@ struct NewtonOptions {
     double first_forcing = 0;        // relative tolerance of the first linear solve; 0: what the goal asks for
     int max_linear_iterations = 20000;
     bool line_search = true;         // false: one full step, converged if it halves the gradient
+    std::function<void()> before_iteration;  // where not empty; what it throws ends the call
 };
 
 enum class Termination { Converged, IterationLimit, LineSearchFailed, LinearSolveFailed, NotFinite, Unstable };
@@ -34,7 +36,7 @@ struct NewtonScratch {
 
 /// Minimises W from q, which must be allowed (W finite). The Hessian is used as it is, and made positive semi-definite
 /// for the rest of the call where conjugate gradients meet negative curvature or the line search finds no descent.
-/// The linear solves are inexact: no more accurate than the goal asks for, at first no more than a tenth.
+/// The linear solves are inexact: no more accurate than the goal asks for, after the first no more than to a tenth.
 /// On return q holds the best iterate; the caller decides what a failure means.
 NewtonSummary minimize(Potential& potential, const NewtonOptions& options, Field& q, NewtonScratch& scratch);
 

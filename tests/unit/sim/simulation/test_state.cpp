@@ -118,6 +118,22 @@ TEST_CASE(
     CHECK(way_of_probe(sim::Simulation(scene, frame_time), whole) > 0.01);
 }
 
+TEST_CASE(
+    "a restored checkpoint of a body whose interface passes through the grid goes on to the "
+    "same bits") {
+    // The grid at rest, where places decide which corners are free, and BDF2 sees others than there are.
+    sim::Scene scene = bar(sim::Method::Enriched, sim::Steps::Bdf2);
+    scene.contact.mode = sim::Contact::Mode::Grid;
+    scene.solver.enrich = {true, false, false, false};
+    scene.solver.dt = 5e-3;
+    scene.pins.clear();
+    scene.forces.clear();
+    scene.bodies[0].velocity = {1, 0.5, 0.3};
+    scene.bodies[0].spin = {0, 6, 2};
+    sim::Simulation whole(scene, frame_time);
+    check_resumes(whole, scene, 0.02, 20);
+}
+
 TEST_CASE("a restored checkpoint of points goes on to the same bits") {
     const sim::Steps steps =
         GENERATE(sim::Steps::Implicit, sim::Steps::Explicit, sim::Steps::SemiImplicit);
@@ -257,4 +273,24 @@ TEST_CASE("pins move as told and let go") {
     simulation.advance_to(0.2);
     CHECK(simulation.pins()[0].force.norm() == 0);
     CHECK(std::abs(simulation.probes()[0].position.x()) > 1e-6);
+}
+
+TEST_CASE(
+    "a watch is asked on the way of a solve, and a step that it gives up leaves no trace") {
+    const sim::Scene scene =
+        bar(sim::Method::Fem, GENERATE(sim::Steps::Implicit, sim::Steps::Static));
+    sim::Simulation simulation(scene, frame_time);
+    const double end = scene.solver.steps == sim::Steps::Static ? 1 : *scene.solver.dt;
+    const std::vector<std::byte> before = simulation.checkpoint();
+    sim::Simulation whole(scene, frame_time);
+    int n_asked = 0;
+    whole.advance_to(end, [&](double) { ++n_asked; });
+    CHECK(n_asked == whole.stats().newton_iterations + whole.stats().steps);
+    CHECK_THROWS_AS(
+        simulation.advance_to(end, [](double) { throw std::runtime_error("stop"); }),
+        std::runtime_error);
+    simulation.restore(before);
+    simulation.advance_to(end);
+    const bool is_same = simulation.checkpoint() == whole.checkpoint();
+    CHECK(is_same);
 }
