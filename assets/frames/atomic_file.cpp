@@ -1,15 +1,17 @@
 #include "assets/frames/atomic_file.h"
 
 #include "assets/base/error.h"
-#include "assets/frames/frame_cache.h"
 
 #include <cerrno>
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 namespace assets {
@@ -88,6 +90,15 @@ std::optional<std::string> name_of_temporary(const std::string& name) {
     return name.substr(1, mark - 1);
 }
 
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+    return path.has_parent_path() ? path.parent_path() : ".";
+}
+
+std::filesystem::path temporary_of(const std::filesystem::path& path) {
+    return folder_of(path)
+           / fmt::format(".{}{}{}", path.filename().string(), temporary_mark, ::getpid());
+}
+
 }  // namespace
 
 void remove_files(const std::filesystem::path& folder,
@@ -122,10 +133,18 @@ void sync_folder(const std::filesystem::path& folder) {
         fail(folder, errno);
 }
 
+std::string read_whole(const std::filesystem::path& path) {
+    try {
+        std::ifstream file(path, std::ios::binary);
+        file.exceptions(std::ios::failbit | std::ios::badbit);  // as its buffer throws
+        return {std::istreambuf_iterator<char>(file), {}};
+    } catch (const std::ios_base::failure&) {
+        throw Error(ErrorKind::Resources, fmt::format("cannot read {}", path.string()));
+    }
+}
+
 void write_atomically(const std::filesystem::path& path, const std::string& bytes) {
-    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-    const std::filesystem::path temporary =
-        folder / fmt::format(".{}{}{}", path.filename().string(), temporary_mark, ::getpid());
+    const std::filesystem::path temporary = temporary_of(path);
     int reason = write_flushed(temporary, bytes, O_TRUNC);
     if (reason == 0 && ::rename(temporary.c_str(), path.c_str()) != 0)
         reason = errno;
@@ -133,7 +152,24 @@ void write_atomically(const std::filesystem::path& path, const std::string& byte
         ::unlink(temporary.c_str());
         fail(path, reason);
     }
-    sync_folder(folder);
+    sync_folder(folder_of(path));
+}
+
+UnfinishedFile::UnfinishedFile(std::filesystem::path path)
+    : path_(std::move(path)), temporary_(temporary_of(path_)) {}
+
+UnfinishedFile::~UnfinishedFile() {
+    if (!is_kept_)
+        ::unlink(temporary_.c_str());
+}
+
+void UnfinishedFile::keep() {
+    Descriptor file(temporary_, O_RDONLY);
+    if (file.value() < 0 || uninterrupted([&] { return ::fsync(file.value()); }) != 0
+        || ::rename(temporary_.c_str(), path_.c_str()) != 0)
+        fail(path_, errno);
+    is_kept_ = true;
+    sync_folder(folder_of(path_));
 }
 
 void append_flushed(const std::filesystem::path& path, const std::string& bytes) {

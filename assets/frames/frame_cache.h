@@ -143,8 +143,4 @@ class FrameCacheReader {
     std::string digest_, surfaces_checksum_;
 };
 
-/// Writes `bytes` to `path` through a temporary file in the same folder, flush and rename. Throws
-/// Error(Resources) naming the path and the system's reason.
-void write_atomically(const std::filesystem::path& path, const std::string& bytes);
-
 }  // namespace assets

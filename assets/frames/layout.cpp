@@ -21,8 +21,12 @@ bool is_frame_name(const std::string& name) {
 
 }  // namespace
 
+std::string padded(int number) {
+    return number < 0 ? fmt::format("-{:04}", -number) : fmt::format("{:04}", number);
+}
+
 std::string frame_name(int number) {
-    return fmt::format("{}{:04}{}", frame_prefix, number, frame_suffix);
+    return fmt::format("{}{}{}", frame_prefix, padded(number), frame_suffix);
 }
 
 bool is_cache_file(const std::string& name) {

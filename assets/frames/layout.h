@@ -1,4 +1,4 @@
-// The names of a cache's files.
+// The names of files of frames.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +9,9 @@ namespace assets {
 inline constexpr const char* manifest_name = "manifest.json";
 inline constexpr const char* surfaces_name = "surfaces.bin";
 inline constexpr const char* checkpoint_name = "checkpoint.bin";
+
+/// A frame's number as file names carry it: at least four digits, "0007", "-0007", "12345".
+std::string padded(int number);
 
 /// "frame.0007.bin".
 std::string frame_name(int number);

@@ -1,6 +1,7 @@
 #include "assets/frames/manifest.h"
 
 #include "assets/base/error.h"
+#include "assets/frames/atomic_file.h"
 #include "assets/frames/checksum.h"
 #include "assets/frames/layout.h"
 

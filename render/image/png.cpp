@@ -1,5 +1,5 @@
 #include "assets/base/error.h"
-#include "assets/frames/frame_cache.h"
+#include "assets/frames/atomic_file.h"
 #include "render/image/image.h"
 #include "render/image/view_transform.h"
 

@@ -1,13 +1,12 @@
 #include "shots/stages/encode.h"
 
 #include "assets/base/error.h"
+#include "assets/frames/atomic_file.h"
 #include "assets/frames/frame_cache.h"
 #include "shots/stages/child_process.h"
 #include "shots/stages/interruption.h"
 
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 
 namespace shots {
 namespace {
@@ -40,11 +39,6 @@ const std::vector<std::string>& codec_options() {
         "-f",
         "mp4"};
     return options;
-}
-
-std::string read_file(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// Text that changes whenever the film would.
@@ -83,18 +77,19 @@ std::vector<std::string> command_line(const EncodeJob& job,
 void encode(const EncodeJob& job, Progress& progress) {
     const std::filesystem::path stamp_file = job.film.string() + ".stamp";
     const std::string stamp = stamp_of(job);
-    if (std::filesystem::is_regular_file(job.film) && read_file(stamp_file) == stamp) {
+    if (std::filesystem::is_regular_file(job.film)
+        && std::filesystem::is_regular_file(stamp_file)
+        && assets::read_whole(stamp_file) == stamp) {
         progress.say(fmt::format("encode: {} is there already", job.film.string()));
         return;
     }
 
-    const std::filesystem::path unfinished =
-        job.film.parent_path() / fmt::format(".{}.tmp", job.film.filename().string());
-    ChildProcess ffmpeg(command_line(job, unfinished), "apt-get install ffmpeg");
+    assets::UnfinishedFile film(job.film);
+    ChildProcess ffmpeg(command_line(job, film.temporary()), "apt-get install ffmpeg");
     progress.start("encode", static_cast<int>(job.pictures.size()));
     for (const Picture& picture : job.pictures) {
         stop_if_interrupted();
-        ffmpeg.write(read_file(picture.file));
+        ffmpeg.write(assets::read_whole(picture.file));
         progress.advance(fmt::format("frame {}", picture.frame));
     }
     stop_if_interrupted();  // Ctrl-C has stopped ffmpeg too: that is no failure
@@ -102,7 +97,7 @@ void encode(const EncodeJob& job, Progress& progress) {
     progress.finish();
 
     std::filesystem::remove(stamp_file);
-    std::filesystem::rename(unfinished, job.film);
+    film.keep();
     assets::write_atomically(stamp_file, stamp);
 }
 

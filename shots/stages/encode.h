@@ -17,7 +17,7 @@ struct EncodeJob {
 
 /// Encodes H.264 in an MP4 (4:2:0, BT.709), unless the film of these very pictures is there already; its stamp lies beside
 /// it in film + ".stamp". The film appears whole or not at all. Throws Error(Failed) with ffmpeg's own words where it fails or
-/// is not installed.
+/// is not installed, and Error(Resources) where a picture cannot be read.
 void encode(const EncodeJob& job, Progress& progress);
 
 }  // namespace shots

@@ -1,11 +1,8 @@
 #include "shots/stages/frame_table.h"
 
 #include "assets/frames/atomic_file.h"
-#include "assets/frames/frame_cache.h"
 
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 #include <system_error>
 
@@ -13,8 +10,7 @@ namespace shots {
 namespace {
 
 std::string read_text(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
+    return std::filesystem::exists(path) ? assets::read_whole(path) : std::string();
 }
 
 /// The number before the first comma; empty for a header.

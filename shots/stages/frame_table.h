@@ -14,7 +14,7 @@ bool is_table(const std::filesystem::path& path, const std::string& header);
 std::optional<int> last_frame_in_table(const std::filesystem::path& path);
 
 /// Makes the table hold the header and, of the rows it has, those of frames up to `last_frame`; creates it where it
-/// is missing. Throws assets::Error(Resources).
+/// is missing. All three throw assets::Error(Resources), also where a table that is there cannot be read.
 void cut_table(const std::filesystem::path& path, const std::string& header, int last_frame);
 
 }  // namespace shots

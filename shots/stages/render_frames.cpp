@@ -2,10 +2,10 @@
 
 #include "assets/base/error.h"
 #include "assets/frames/frame_cache.h"
+#include "assets/frames/layout.h"
 #include "render/image/image.h"
 #include "render/render.h"
 #include "shots/stages/interruption.h"
-#include "shots/text/frame_range.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -59,7 +59,7 @@ std::vector<Picture> planned_pictures(const RenderJob& job,
     for (const int number : job.frames) {
         stamp["frame"] = fmt::format("{:016x}", cache.checksum(number));
         pictures.push_back({number,
-                            job.images / fmt::format("{}.{}.png", job.name, padded(number)),
+                            job.images / fmt::format("{}.{}.png", job.name, assets::padded(number)),
                             assets::digest(stamp)});
     }
     return pictures;

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstddef>
 #include <fmt/core.h>
+#include <string>
 #include <utility>
 
 namespace shots {
@@ -55,6 +56,7 @@ struct Companions {
 struct Past {
     int n_frames = 0;
     std::vector<std::byte> checkpoint;
+    std::string lost = {};  // why frames that are there are of no use
 };
 
 /// Throws Error(Input) where the cache belongs to another fingerprint, or where another version of the program wrote the
@@ -63,12 +65,17 @@ Past find_past(const SimulateJob& job, const Companions& companions) {
     const std::filesystem::path folder = cache_folder(job.folder);
     assets::CacheExtent extent = assets::cache_extent(folder, job.fingerprint, job.frames);
     if (!extent.checkpoint)
-        return {};
+        return {0, {}, extent.n_whole_frames > 0 ? "the checkpoint is lost or damaged" : ""};
     auto& [frame, checkpoint] = *extent.checkpoint;
     const int index = std::min(frame, job.frames.back()) - job.frames.front();
-    if (index < 0 || index >= extent.n_whole_frames
-        || !companions.reach(job, index, assets::FrameCacheReader(folder).surfaces()))
+    if (index < 0)
         return {};
+    if (index >= extent.n_whole_frames)
+        return {0,
+                {},
+                fmt::format("frame {} is lost or damaged", job.frames[extent.n_whole_frames])};
+    if (!companions.reach(job, index, assets::FrameCacheReader(folder).surfaces()))
+        return {0, {}, "a table or an OpenVDB file beside the cache is lost or cut"};
     if (frame < job.frames.back() && !sim::Simulation::is_readable(checkpoint))
         throw assets::Error(
             assets::ErrorKind::Input,
@@ -77,7 +84,7 @@ Past find_past(const SimulateJob& job, const Companions& companions) {
                 "with --overwrite, or use another --out",
                 folder.string(),
                 frame));
-    return {index + 1, std::move(checkpoint)};
+    return {index + 1, std::move(checkpoint), {}};
 }
 
 /// Of bodies made of domains, then of colliders, then of bodies made of points.
@@ -144,6 +151,11 @@ void simulate(const SimulateJob& job, Progress& progress) {
     const auto n_frames = static_cast<int>(job.frames.size());
     const Past past = job.overwrite ? Past{} : find_past(job, companions);
     const int first = past.n_frames;
+    if (!past.lost.empty())
+        progress.say(fmt::format("sim: begins again at frame {}: {} in {}",
+                                 job.frames.front(),
+                                 past.lost,
+                                 job.folder.string()));
     if (first == n_frames) {
         progress.say(fmt::format("sim: all {} frames are in {} already",
                                  n_frames,

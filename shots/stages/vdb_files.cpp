@@ -2,7 +2,7 @@
 
 #include "assets/base/error.h"
 #include "assets/frames/atomic_file.h"
-#include "assets/frames/frame_cache.h"
+#include "assets/frames/layout.h"
 
 #include <charconv>
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ std::optional<int> frame_of(const std::string& name) {
 }  // namespace
 
 std::filesystem::path VdbFiles::path(const std::string& body, int frame) const {
-    return folder_ / fmt::format("{}.{:04}.vdb", body, frame);
+    return folder_ / fmt::format("{}.{}.vdb", body, assets::padded(frame));
 }
 
 bool VdbFiles::hold(const std::vector<std::string>& bodies,

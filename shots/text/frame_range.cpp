@@ -81,8 +81,4 @@ std::vector<int> parse_frame_list(std::string_view text) {
     return {numbers.begin(), numbers.end()};
 }
 
-std::string padded(int number) {
-    return number < 0 ? fmt::format("-{:04}", -number) : fmt::format("{:04}", number);
-}
-
 }  // namespace shots

@@ -20,7 +20,4 @@ FrameRange parse_frame_range(std::string_view text);
 /// Reads ranges separated by commas or spaces into sorted numbers, each once. Throws as above.
 std::vector<int> parse_frame_list(std::string_view text);
 
-/// A frame's number as file names carry it: at least four digits, "0007", "-0007", "12345".
-std::string padded(int number);
-
 }  // namespace shots

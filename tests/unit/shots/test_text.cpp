@@ -92,10 +92,3 @@ TEST_CASE("frame ranges") {
     CHECK_THROWS_WITH(parse_frame_list("1-99999999999"),
                       Catch::Matchers::Contains("from -10000000 to 10000000"));
 }
-
-TEST_CASE("frame numbers are padded to four digits") {
-    CHECK(padded(7) == "0007");
-    CHECK(padded(1001) == "1001");
-    CHECK(padded(12345) == "12345");
-    CHECK(padded(-7) == "-0007");
-}

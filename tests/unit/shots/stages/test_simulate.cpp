@@ -215,6 +215,30 @@ TEST_CASE("whatever is lost or damaged is computed again, to the same bytes") {
     CHECK(output(folder.path()) == whole);
 }
 
+TEST_CASE("why frames that are there are simulated again is told") {
+    const TemporaryFolder folder;
+    const auto job = make_job(folder.path(), 3);
+    run(job);
+    const auto cache = cache_folder(job.folder);
+    std::string reason;
+    SECTION("a frame") {
+        std::filesystem::remove(cache / "frame.1002.bin");
+        reason = "frame 1002 is lost or damaged";
+    }
+    SECTION("a table") {
+        std::filesystem::remove(folder.path() / "probes.csv");
+        reason = "a table or an OpenVDB file";
+    }
+    SECTION("the checkpoint") {
+        write_file(cache / "checkpoint.bin", "damaged");
+        reason = "the checkpoint is lost or damaged";
+    }
+    std::ostringstream told;
+    Progress progress(ProgressStyle::Lines, told);
+    simulate(job, progress);
+    CHECK_THAT(told.str(), Contains("begins again at frame 1001: " + reason));
+}
+
 TEST_CASE("bodies made of points reach the cache and files of OpenVDB") {
     const TemporaryFolder folder;
     const SimulateJob job = make_snow_job(folder.path(), 2);
