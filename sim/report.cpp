@@ -17,18 +17,17 @@ ProbeRow region_row(const AssembledBody& body, int region, const std::vector<Vec
         if (body.lattice.region[p] != region)
             continue;
         const Mat3 F = deformation_gradient(body.lattice, p, corners);
-        const double volume = body.lattice.domain_volume(p),
-                     deformed = volume * F.determinant();
+        const double volume = body.lattice.domain_volume(p);
         Vec3 centre = Vec3::Zero();
         for (const int c : body.lattice.corners[p])
             centre += corners[c] / 8;
-        row.position += deformed * centre;
+        row.position += volume * centre;
         row.stretch += volume * Eigen::JacobiSVD<Mat3>(F).singularValues()[0];
-        row.volume += deformed;
+        row.volume += volume * F.determinant();
         rest_volume += volume;
     }
     if (rest_volume > 0) {  // a region may be thinner than a domain everywhere
-        row.position /= row.volume;
+        row.position /= rest_volume;
         row.stretch /= rest_volume;
     }
     return row;
@@ -46,14 +45,13 @@ ProbeRow region_row(const AssembledBody& body,
         if (points.region[p] != region)
             continue;
         const Eigen::Map<const Mat3> F(state.F[p].m);
-        const double deformed = points.volume[p] * F.determinant() * state.J_plastic[p];
-        row.position += deformed * unpadded(x[p]);
+        row.position += points.volume[p] * unpadded(x[p]);
         row.stretch += points.volume[p] * Eigen::JacobiSVD<Mat3>(F).singularValues()[0];
-        row.volume += deformed;
+        row.volume += points.volume[p] * F.determinant() * state.J_plastic[p];
         rest_volume += points.volume[p];
     }
     if (rest_volume > 0) {
-        row.position /= row.volume;
+        row.position /= rest_volume;
         row.stretch /= rest_volume;
     }
     return row;

@@ -23,12 +23,12 @@ struct Stats {
     double total_mass = 0;  // on the degrees of freedom [kg]
     double smallest_J = 0;  // over all domains, now
 
-    // Of surfaces into colliders and into each other, and the smallest gap between bodies as far as it is below one:
-    // shares of a domain's edge.
+    // Shares of a domain's edge: of surfaces into colliders and into each other, and the smallest gap between bodies, 1 where
+    // it is larger.
     double collider_penetration = 0, penetration = 0, gap = 1;
 };
 
-/// One row of probes.csv: a material point, or a region's centre with its mean stretch and volume.
+/// One row of probes.csv: a material point, or a region's centre of mass with its mean stretch and volume.
 struct ProbeRow {
     std::string name;
     Vec3 position{0, 0, 0};  // [m]

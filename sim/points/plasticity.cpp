@@ -16,6 +16,7 @@ namespace sim {
 namespace {
 
 constexpr double least_stretch = 0.1;  // that is far enough from zero to divide by
+constexpr double flat = 1e-9;  // stretch that is divided by in its place where there is none
 constexpr double most_defect = 1e-28;  // squared cosine of an angle between singular vectors
 
 template <class S>
@@ -92,7 +93,12 @@ void yield(const SnowOptions& snow,
     if (inside(F, low, high) > 0)
         return;
     Eigen::Map<Mat3> f(F.m), f_n(F_n.m);
-    const auto [U, sigma, V] = signed_svd(f);
+    if (!f.allFinite())
+        return;
+    auto [U, sigma, V] = signed_svd(f);
+    for (double& stretch : sigma)
+        if (std::abs(stretch) < flat)
+            stretch = std::copysign(flat, stretch);
     const Vec3 elastic = sigma.cwiseMax(low).cwiseMin(high);
     f = U * elastic.asDiagonal() * V.transpose();
     f_n = f_n * V * elastic.cwiseQuotient(sigma).asDiagonal() * V.transpose();

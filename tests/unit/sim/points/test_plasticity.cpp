@@ -6,6 +6,8 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace {
@@ -55,6 +57,24 @@ TEST_CASE("stretches end within the limits, those inside stay, and the volume is
               <= 1e-12 * motion.norm());
     }
     CHECK(n_inside > 100);
+}
+
+TEST_CASE("a flat point becomes a thin one, and what is no number stays") {
+    const sim::SnowOptions snow;
+    sim::Matrix3<double> F = matrix(Vec3(1, 1, 0).asDiagonal()), F_n = matrix(Mat3::Identity());
+    double J_plastic = 1;
+    sim::yield(snow, F, F_n, J_plastic);
+    CHECK(F.m[8] == Approx(1 - snow.compression_limit));
+    CHECK(Eigen::Map<const Mat3>(F_n.m).allFinite());
+
+    F = matrix(Mat3::Identity());
+    F.m[4] = std::numeric_limits<double>::quiet_NaN();
+    const sim::Matrix3<double> before = F_n;
+    sim::yield(snow, F, F_n, J_plastic);
+    CHECK(std::isnan(F.m[4]));
+    CHECK(F.m[0] == 1);
+    CHECK(std::equal(before.m, before.m + 9, F_n.m));
+    CHECK(std::isfinite(J_plastic));
 }
 
 TEST_CASE("a point turned inside out comes back with a positive volume") {
