@@ -1,4 +1,5 @@
 // A grid that moves along with bodies: its map is kept until pins change.
+#include "assets/base/error.h"
 #include "sim/stepper.h"
 
 #include <algorithm>
@@ -128,6 +129,8 @@ void Stepper::restore_map(const State& state) {
     if (!moves_grid_)
         return;
     map_.rebuild(state.grid.made_at, state.grid.free, ranges_);
+    assets::check(static_cast<int>(state.grid.x.size()) == map_.n_dofs() - map_.n_free(),
+                  "checkpoint has the nodes of its map");
     lift(state, state.x, state.v);  // mass
 }
 

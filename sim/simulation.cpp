@@ -1,29 +1,17 @@
 #include "sim/simulation.h"
 
-#include "assets/base/error.h"
+#include "sim/checkpoint.h"
 #include "sim/collider_surface.h"
 #include "sim/overlap.h"
 #include "sim/report.h"
 #include "sim/stepper.h"
 
-#include <cmath>
-#include <cstdint>
-#include <cstring>
 
 namespace sim {
 
 namespace {
 
 constexpr double steps_per_frame = 10;  // where the shot gives no dt
-
-// Begins every checkpoint; counts up where what checkpoint() writes changes.
-constexpr char checkpoint_format[] = "state 3";
-
-void append(std::vector<std::byte>& bytes, const void* data, std::size_t size) {
-    const std::size_t before = bytes.size();
-    bytes.resize(before + size);
-    std::memcpy(bytes.data() + before, data, size);
-}
 
 }  // namespace
 
@@ -51,20 +39,12 @@ struct Simulation::Impl {
             stepper.refresh(state);
     }
 
-    /// The arrays of the state, as a checkpoint holds them, each after its size.
-    std::vector<Field*> fields() {
-        MovingGrid& grid = state.grid;
-        return {&state.x,
-                &state.v,
-                &state.inner_force,
-                &state.inner_force_before,
-                &state.x_before,
-                &state.v_before,
-                &grid.made_at,
-                &grid.x,
-                &grid.v,
-                &grid.x_before,
-                &grid.v_before};
+    Snapshot snapshot() const {
+        Snapshot result{state, {}};
+        for (const AssembledBody& body : assembly.bodies)
+            if (body.enrichment)
+                result.enriched.push_back(body.enrichment->enriched());
+        return result;
     }
 
     Scene scene;
@@ -162,89 +142,22 @@ std::vector<PointCloud> Simulation::point_clouds() const {
 }
 
 std::vector<std::byte> Simulation::checkpoint() const {
-    std::vector<std::byte> bytes;
-    append(bytes, checkpoint_format, sizeof checkpoint_format);
-    const State& state = impl_->state;
-    const double n_contacts = static_cast<double>(state.contacts.size());
-    for (const double number :
-         {state.time, state.last_dt, state.dt_limit, state.quiet_drifts, n_contacts})
-        append(bytes, &number, sizeof(double));
-    append(bytes, state.contacts.data(), state.contacts.size() * sizeof(HeldContact));
-    append(bytes, state.top_speed.data(), state.top_speed.size() * sizeof(double));
-    for (const Field* field : impl_->fields()) {
-        const std::uint64_t size = field->size();
-        append(bytes, &size, sizeof size);
-        append(bytes, field->data(), size * sizeof(Vec3p));
-    }
-    append(bytes, state.grid.free.data(), state.grid.free.size());
-    const std::uint64_t n_held = state.grid.held.size();
-    append(bytes, &n_held, sizeof n_held);
-    append(bytes, state.grid.held.data(), n_held * sizeof(int));
-    for (const AssembledBody& body : impl_->assembly.bodies)
-        if (body.enrichment)
-            append(
-                bytes, body.enrichment->enriched().data(), body.enrichment->enriched().size());
-    append(bytes, state.affine.data(), state.affine.size() * sizeof(Gradient));
-    for (const PointState& points : state.points) {
-        append(bytes, points.F.data(), points.F.size() * sizeof(Matrix3<double>));
-        append(bytes, points.J_plastic.data(), points.J_plastic.size() * sizeof(double));
-    }
-    return bytes;
+    return write_checkpoint(impl_->snapshot());
 }
 
 bool Simulation::is_readable(const std::vector<std::byte>& bytes) {
-    const std::size_t size = sizeof checkpoint_format;
-    return bytes.size() >= size && std::memcmp(bytes.data(), checkpoint_format, size) == 0;
+    return is_checkpoint(bytes);
 }
 
 void Simulation::restore(const std::vector<std::byte>& bytes) {
-    assets::check(is_readable(bytes), "checkpoint of this version");
-    std::size_t next = sizeof checkpoint_format;
-    State& state = impl_->state;
-    const auto take = [&](void* to, std::size_t size) {
-        assets::check(next + size <= bytes.size(), "checkpoint of another scene");
-        std::memcpy(to, bytes.data() + next, size);
-        next += size;
-    };
-    double n_contacts = 0;
-    for (double* number :
-         {&state.time, &state.last_dt, &state.dt_limit, &state.quiet_drifts, &n_contacts})
-        take(number, sizeof(double));
-    assets::check(n_contacts * sizeof(HeldContact) <= bytes.size(),
-                  "checkpoint of another scene");
-    state.contacts.resize(static_cast<std::size_t>(n_contacts));
-    take(state.contacts.data(), state.contacts.size() * sizeof(HeldContact));
-    take(state.top_speed.data(), state.top_speed.size() * sizeof(double));
-    for (Field* field : impl_->fields()) {
-        std::uint64_t size = 0;
-        take(&size, sizeof size);
-        assets::check(size <= bytes.size() / sizeof(Vec3p), "checkpoint of another scene");
-        field->resize(size);
-        take(field->data(), size * sizeof(Vec3p));
-    }
-    assets::check(state.x.size() == impl_->assembly.mass.size(), "checkpoint of another scene");
-    state.grid.free.resize(state.grid.made_at.size());
-    take(state.grid.free.data(), state.grid.free.size());
-    std::uint64_t n_held = 0;
-    take(&n_held, sizeof n_held);
-    assets::check(n_held <= state.x.size(), "checkpoint of another scene");
-    state.grid.held.resize(n_held);
-    take(state.grid.held.data(), n_held * sizeof(int));
-    for (AssembledBody& body : impl_->assembly.bodies) {
-        if (!body.enrichment)
-            continue;
-        std::vector<char> enriched(body.lattice.n_domains());
-        take(enriched.data(), enriched.size());
-        body.enrichment->restore(std::move(enriched));
-    }
-    take(state.affine.data(), state.affine.size() * sizeof(Gradient));
-    for (PointState& points : state.points) {
-        take(points.F.data(), points.F.size() * sizeof(Matrix3<double>));
-        take(points.J_plastic.data(), points.J_plastic.size() * sizeof(double));
-    }
-    assets::check(next == bytes.size(), "checkpoint of another scene");
-    impl_->stepper.restore_map(state);
-    impl_->stepper.refresh(state);
+    Snapshot snapshot = read_checkpoint(bytes, impl_->snapshot());
+    impl_->state = std::move(snapshot.state);
+    auto enriched = snapshot.enriched.begin();
+    for (AssembledBody& body : impl_->assembly.bodies)
+        if (body.enrichment)
+            body.enrichment->restore(std::move(*enriched++));
+    impl_->stepper.restore_map(impl_->state);
+    impl_->stepper.refresh(impl_->state);
 }
 
 }  // namespace sim

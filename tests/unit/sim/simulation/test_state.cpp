@@ -179,6 +179,24 @@ TEST_CASE("a restored checkpoint of bodies that meet goes on to the same bits") 
           > 1e-3);  // pushed by the other
 }
 
+TEST_CASE("a checkpoint of other bodies, or one that is cut, is refused and changes nothing") {
+    const sim::Scene scene = bar(sim::Method::Enriched);
+    sim::Simulation simulation(scene, frame_time);
+    simulation.advance_to(0.02);
+    const std::vector<std::byte> before = simulation.checkpoint();
+    std::vector<std::byte> cut = before, longer = before;
+    cut.resize(before.size() / 2);
+    longer.push_back({});
+    sim::Scene finer = scene;
+    finer.bodies[0].domain_size /= 2;
+    for (const std::vector<std::byte>& other :
+         {cut, longer, sim::Simulation(finer, frame_time).checkpoint()}) {
+        CHECK_THROWS_AS(simulation.restore(other), std::logic_error);
+        const bool is_same = simulation.checkpoint() == before;
+        CHECK(is_same);
+    }
+}
+
 TEST_CASE("a checkpoint that another version of the program wrote is told") {
     const sim::Scene scene = bar(sim::Method::Enriched, sim::Steps::Explicit);
     const std::vector<std::byte> now = sim::Simulation(scene, frame_time).checkpoint();
