@@ -17,7 +17,7 @@ namespace sim {
 /// there: it keeps energy, momentum and angular momentum as `fem` does. Mass lies further out than at the corners, by
 /// h²/8 along each axis where cells are two domains wide: a cube three cells wide is 16% harder to turn.
 ///
-/// [Z18] takes weights anew where corners are in a grid at rest. That drains 6 to 19% of the energy in ten swings of a bar:
+/// [Z18] takes weights anew where corners are in a grid at rest. That drains 7 to 27% of the energy in ten swings of a bar:
 /// weights that change scramble what nodes do not see, and each way between corners and nodes blunts it. Needed is such a
 /// grid only where bodies meet on it; else this one is used, with the same nodes at the start.
 struct MovingGrid {

@@ -216,21 +216,31 @@ TEST_CASE("the total energy of a swinging bar never rises", "[conservation]") {
 
 namespace {
 
-/// The largest change of a bar's energy in ten oscillations, looked at every quarter, of what swings.
-double ten_oscillations(tests::BarOptions options) {
-    const double period = 1 / 3.541;  // C1-H [s]
-    options.solver.dt = period / 200;
-    sim::Simulation simulation(tests::bar_scene(options), frame_time);
-    const double start = total_energy(simulation.stats());
-    double swing = 0, change = 0;
-    for (int k = 1; k <= 40; ++k) {
-        simulation.advance_to(period * k / 4);
-        swing = std::max(swing, simulation.stats().kinetic_energy);
-        const double now = total_energy(simulation.stats()) - start;
-        change = std::abs(now) > std::abs(change) ? now : change;
+/// The largest changes of a bar's energy in its first ten oscillations and in the next ten, looked at every quarter, of what
+/// swings. Gravity comes at once, and with it some motion in modes beyond the first.
+struct Oscillations {
+    double first = 0, next = 0;
+
+    explicit Oscillations(tests::BarOptions options) {
+        const bool is_uniform = options.middle_modulus == options.end_modulus;
+        const double period = 1 / (is_uniform ? 3.541 : 2.097);  // C1-H, C1-S [s]
+        options.solver.dt = period / 200;
+        sim::Simulation simulation(tests::bar_scene(options), frame_time);
+        double begin = 0;
+        for (double* change : {&first, &next}) {
+            const double start = total_energy(simulation.stats());
+            double swing = 0;
+            for (int k = 1; k <= 40; ++k) {
+                simulation.advance_to(begin + period * k / 4);
+                swing = std::max(swing, simulation.stats().kinetic_energy);
+                const double now = total_energy(simulation.stats()) - start;
+                *change = std::abs(now) > std::abs(*change) ? now : *change;
+            }
+            *change /= swing;
+            begin += 10 * period;
+        }
     }
-    return change / swing;
-}
+};
 
 }  // namespace
 
@@ -242,16 +252,24 @@ TEST_CASE("ten free oscillations of a bar at 200 steps a period keep the energy 
         tests::BarOptions options;
         options.n_domains = {18, 6, 6};
         options.segment_ends = {6, 12};
-        if (method != sim::Method::Enriched)  // which, of one material, is domains
+        const bool is_enriched = method == sim::Method::Enriched;
+        if (!is_enriched)  // enriched of one material is domains
             options.middle_modulus = options.end_modulus;
         options.solver.method = method;
         options.solver.steps = scheme.steps;
-        const double change = ten_oscillations(options);
-        WARN(name << ", " << scheme.name << " changes the energy by " << 100 * change << "%");
-        if (scheme.steps == sim::Steps::Implicit)
-            CHECK((change < -0.01 && change > -1.5));
-        else
-            CHECK(std::abs(change) < 0.01);
+        const Oscillations change(options);
+        WARN(name << ", " << scheme.name << " changes the energy by " << 100 * change.first
+                  << "%, then " << 100 * change.next << "%");
+        if (scheme.steps == sim::Steps::Implicit) {
+            CHECK((change.first < -0.01 && change.first > -1.5));
+            continue;
+        }
+        // BDF2 takes (w dt)⁴/2 of a mode's energy in a step: 0.1% of the first one's in ten of its periods, but a quarter to a
+        // third of the second one's, which is four to five times as fast and gets about 1% of what gravity brings at once
+        // (0.8% in a slender cantilever), and more of those beyond.
+        CHECK(std::abs(change.next) < 0.01);
+        CHECK(std::abs(change.first)
+              < (is_enriched && scheme.steps == sim::Steps::Bdf2 ? 0.015 : 0.01));
     }
 }
 
@@ -270,10 +288,10 @@ TEST_CASE("where the grid is at rest, a bar's ten oscillations lose energy, and 
         options.solver.method = method;
         options.solver.steps = steps;
         options.contact = sim::Contact::Mode::Grid;
-        const double change = ten_oscillations(options);
+        const double change = Oscillations(options).first;
         WARN(name << ", " << int(steps) << " changes the energy by " << 100 * change
                   << "% on a grid at rest");
-        CHECK((change < 0 && change > -0.2));
+        CHECK((change < 0 && change > -0.3));
     }
 }
 
@@ -288,5 +306,5 @@ TEST_CASE("eight points a domain keep the energy of ten oscillations within 1% t
     options.solver.quadrature = sim::Quadrature::EightPoint;
     options.solver.steps = GENERATE(sim::Steps::Bdf2, sim::Steps::Explicit);
     CAPTURE(int(options.solver.steps));
-    CHECK(std::abs(ten_oscillations(options)) < 0.01);
+    CHECK(std::abs(Oscillations(options).first) < 0.01);
 }
