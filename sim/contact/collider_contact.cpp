@@ -50,9 +50,12 @@ double ColliderContact::gap(int k, int j, const Vec3& X) const {
     return colliders_[j].distance(X).gap + corners_[k].outside;
 }
 
-double ColliderContact::stiffness_of(const ContactCorner& corner) const {
+double ColliderContact::stiffness_of(int k, const Start& start) const {
+    const ContactCorner& corner = corners_[k];
     const double stop = impact_depth * corner.edge;
-    const double v = top_speed_.empty() ? 0 : top_speed_[corner.body];
+    double v = top_speed_.empty() ? 0 : top_speed_[corner.body];
+    if (dt_ > 0)
+        v += (start.position - near_.start(k)).norm() / dt_;
     return std::max(corner.stiffness, corner.mass * v * v / (stop * stop));
 }
 
@@ -122,7 +125,8 @@ void ColliderContact::for_touching(const Field& x, const Visit& visit) const {
         [&](int k, int, const Pair& pair, double depth, const Vec3& normal) {
             const ContactCorner& corner = corners_[k];
             if (depth > 0 || pair.grip.holds())
-                visit(Touch{corner.corner, stiffness_of(corner), normal, depth, pair.grip});
+                visit(Touch{
+                    corner.corner, stiffness_of(k, pair.start), normal, depth, pair.grip});
         });
 }
 
@@ -133,6 +137,7 @@ void ColliderContact::begin_step(const Field& x_n,
     if (empty())
         return;
     top_speed_ = top_speed;
+    dt_ = dt;
     const int n_colliders = static_cast<int>(colliders_.size());
     for (int j = 0; j < n_colliders; ++j) {
         start_poses_[j] = colliders_[j].pose(time);
@@ -147,7 +152,7 @@ void ColliderContact::begin_step(const Field& x_n,
             const double depth = std::max(0.0, -start.gap);
             pairs_.push_back({start,
                               Grip::of(colliders_[j].friction(),
-                                       stiffness_of(corners_[k]),
+                                       stiffness_of(k, start),
                                        depth,
                                        dt,
                                        start.normal,

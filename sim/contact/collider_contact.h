@@ -27,8 +27,9 @@ struct ContactCorner {
 ///
 /// d [m] is the penetration of the body's surface where the collider is at the end of the step; friction resists the
 /// displacement in the step relative to the collider. k = contact_stiffness E s leaves a depth p s / (k / s) under a
-/// pressure p, i.e. less than a thousandth of a domain for bodies that carry their own weight; corners of a body whose
-/// top speed lately was v meet m v² / d_impact² where that is more: d_impact = s/100 stops one that comes so fast.
+/// pressure p, i.e. less than a thousandth of a domain for bodies that carry their own weight; where it is more, k is
+/// m v² / d_impact² with the body's top speed lately and the collider's where the corner is, together v: d_impact = s/100
+/// stops one that comes so fast.
 ///
 /// Beyond the middle of a thin collider the way out is that to the side where the corner was at the start of the step:
 /// whatever a solver tries in between, no minimum of the energy lies behind the collider.
@@ -110,7 +111,7 @@ class ColliderContact : public ContactEnergy {
     };
 
     double gap(int k, int j, const Vec3& X) const;
-    double stiffness_of(const ContactCorner& corner) const;
+    double stiffness_of(int k, const Start& start) const;
     Start start_of(int k, int j) const;
     Vec3 gradient_of(const Touch& touch, const Field& x, double& energy) const;
     static Mat3 hessian_of(const Touch& touch);
@@ -134,6 +135,7 @@ class ColliderContact : public ContactEnergy {
     NearCorners near_;
     std::vector<Pair> pairs_;        // (#near × #colliders)
     std::vector<double> top_speed_;  // (#bodies) of this step; none before the first [m/s]
+    double dt_ = 0;                  // of this step [s]
     std::vector<Pose> start_poses_,
         poses_;  // (#colliders) at the start and the end of the step
 

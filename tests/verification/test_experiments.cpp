@@ -104,10 +104,8 @@ TEST_CASE("rows [Z18 fig 3]: rows inside one cell keep their own strain") {
         return (of["soft"] - 1) / (of["hard"] - 1);
     };
     CAPTURE(strain_ratio(fem), strain_ratio(enriched));
-    CHECK(enriched["soft"] == Approx(fem["soft"]).epsilon(0.05));
-    CHECK(enriched["hard"] == Approx(fem["hard"]).epsilon(0.05));
-    CHECK(enriched["soft"] / enriched["hard"]
-          == Approx(fem["soft"] / fem["hard"]).epsilon(0.05));
+    for (const char* row : {"soft", "hard"})
+        CHECK(enriched[row] - 1 == Approx(fem[row] - 1).epsilon(0.05));
     CHECK(strain_ratio(fem) > 5);
     CHECK(strain_ratio(enriched) > 5);
 }

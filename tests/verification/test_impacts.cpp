@@ -188,6 +188,7 @@ TEST_CASE("cubes that meet at 20 m/s bounce, or go past each other, but not thro
     sim::Scene scene = two_cubes(20, impact.shift);
     scene.solver.dt = 1e-3;
     scene.solver.steps = GENERATE(sim::Steps::Implicit, sim::Steps::Explicit);
+    scene.solver.method = GENERATE(sim::Method::Fem, sim::Method::Domains);
     for (sim::Body& body : scene.bodies) {
         body.regions[0].young_modulus = impact.young_modulus;
         body.domain_size = side / 4;

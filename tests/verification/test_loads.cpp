@@ -1,5 +1,6 @@
 // Experiments of [Z18] in which bodies break, fall and hit the ground, from the shot files that film them.
 #include "tests/support/soft_block.h"
+#include "tests/support/squashed_columns.h"
 #include "tests/verification/experiment.h"
 
 #include <catch2/catch.hpp>
@@ -93,6 +94,9 @@ TEST_CASE(
           > 3.99);  // pulled to five times
     CHECK(breaks(averaged, averaged.frames.last)["domains"] == never);
     CHECK(breaks(enriched, enriched.frames.last)["domains"] == never);
+    sim::Simulation pulled(enriched.scene, 1 / enriched.fps);
+    pulled.advance_to(enriched.time_of(enriched.frames.last));
+    CHECK(tests::n_enriched(pulled) > 0);
 }
 
 namespace {

@@ -309,3 +309,20 @@ TEST_CASE("what was seen of corners far off a moving shape that is sampled chang
         check_followed(
             {moving, sphere.center + 0.5 * Vec3(1, 1, 1).normalized()}, outside, coarse);
 }
+
+TEST_CASE("a step ends before a thin plate that moves at a corner could pass it") {
+    // At rest 0.1 m above a plate of 0.02 m that comes up at 20 m/s: the gap over the speed, or a share of the thickness where
+    // they nearly touch. The corner's own speed adds.
+    Collider plate{assets::Box{{-1, -1, -0.02}, {1, 1, 0}}, {}};
+    plate.keys = {{0, {0, 0, 0}, {0, 0, 0}}, {1, {0, 0, 20}, {0, 0, 0}}};
+    const auto longest = [&](double height, double speed) {
+        ColliderContact contact = contact_of(plate);
+        const Field x{sim::padded(Vec3(0, 0, height))}, v{sim::padded(Vec3(0, 0, speed))};
+        contact.begin_step(x, at_rest, 0, 0.1);
+        return contact.largest_step(x, v, 0, 0.1);
+    };
+    CHECK(longest(0.1, 0) == Approx(0.1 / 20));
+    CHECK(longest(0.1, -5) == Approx(0.1 / 25));
+    CHECK(longest(1e-4, 0) == Approx(0.4 * 0.02 / 20));
+    CHECK(longest(0.1, 20) > 1);  // as fast as the plate
+}

@@ -328,3 +328,20 @@ TEST_CASE("a linearisation is called linear enough only where a new one differs 
     CHECK(n_looked_at > 20);
     CHECK(n_not > 20);
 }
+
+TEST_CASE("what is told of bodies apart or in each other is in domain edges") {
+    const Blocks blocks({});
+
+    struct Place {
+        double above;  // [domain edges]
+        double penetration, gap;
+    };
+
+    for (const auto& [above, penetration, gap] :
+         {Place{0.3, 0, 0.3}, Place{-0.1, 0.1, 0}, Place{2, 0, 1}, Place{0, 0, 0}}) {
+        const auto report = blocks.contact.report(blocks.at({0, 0, above * edge}));
+        CAPTURE(above);
+        CHECK(report.penetration == Approx(penetration).margin(1e-9));
+        CHECK(report.gap == Approx(gap).margin(1e-9));
+    }
+}
