@@ -2,8 +2,11 @@
 #include <catch2/catch.hpp>
 
 #include "shot_text.h"
+#include <array>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <numbers>
 
 using namespace shots;
@@ -48,6 +51,7 @@ TEST_CASE("the whole vocabulary is read") {
     CHECK(std::get<sim::DeadLoad>(scene.forces.at(1)).body == "bar");
     CHECK(scene.colliders.at(0).friction.coefficient == 0.4);
     CHECK(shot.render.props.at(0).point == Vec3(0, 0, -0.6));
+    CHECK(scene.contact.mode == sim::Contact::Mode::Grid);
     CHECK(scene.contact.friction.coefficient == 0.3);
     CHECK(scene.contact.pairs.at(0).bodies == std::array<std::string, 2>{"bar", "bar"});
     CHECK(scene.contact.pairs.at(0).friction.coefficient == 0);
@@ -190,11 +194,44 @@ TEST_CASE("bodies have methods and kernels of their own") {
 }
 
 TEST_CASE("the shots that ship are sound") {
-    const std::string shots = SOURCE_ROOT "/shots/";
-    CHECK(load_shot(shots + "bar.toml").warnings.empty());
-    const Shot two_balls = load_shot(shots + "two_balls.toml");
-    CHECK(two_balls.warnings.empty());
-    CHECK(two_balls.scene.bodies.front().skins.size() == 3);
+    int n = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(SOURCE_ROOT "/shots"))
+        if (entry.path().extension() == ".toml") {
+            CAPTURE(entry.path());
+            const Shot shot = load_shot(entry.path());
+            CHECK(shot.warnings.empty());
+            CHECK(shot.name == entry.path().stem());
+            ++n;
+        }
+    CHECK(n >= 11);  // an experiment each
+}
+
+TEST_CASE("how a solver steps, enriches and meets is read word by word") {
+    const auto scene_with = [](const std::string& solver, const std::string& rest = "") {
+        return load_text(with(sound_shot(), "dt     = \"1 ms\"", solver) + rest).scene;
+    };
+    using sim::Steps;
+    const std::map<std::string, Steps> steps = {{"explicit", Steps::Explicit},
+                                                {"semi_implicit", Steps::SemiImplicit},
+                                                {"implicit", Steps::Implicit},
+                                                {"bdf2", Steps::Bdf2}};
+    for (const auto& [word, value] : steps)
+        CHECK(scene_with("steps = \"" + word + "\"").solver.steps == value);
+
+    const auto enriched_by = [&](const std::string& words) {
+        const auto [interface, thin, mixed_cell, strain] =
+            scene_with("enrich = [" + words + "]").solver.enrich;
+        return std::array{interface, thin, mixed_cell, strain};
+    };
+    CHECK(enriched_by("\"interface\"") == std::array{true, false, false, false});
+    CHECK(enriched_by("\"thin\"") == std::array{false, true, false, false});
+    CHECK(enriched_by("\"mixed_cell\", \"strain\"") == std::array{false, false, true, true});
+    const sim::Scene usual = scene_with("grid_ratio = 4");
+    CHECK(usual.solver.grid_ratio == 4);
+    CHECK((usual.solver.enrich.interface && usual.solver.enrich.thin));
+    CHECK(usual.contact.mode == sim::Contact::Mode::Surface);
+    CHECK(scene_with("grid_ratio = 2", "\n[contact]\nmode = \"grid\"\n").contact.mode
+          == sim::Contact::Mode::Grid);
 }
 
 TEST_CASE("bodies keep the order of the file") {
