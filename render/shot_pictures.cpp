@@ -20,7 +20,7 @@ ShotPictures::ShotPictures(const std::vector<assets::CachedSurface>& surfaces,
 }
 
 Scene ShotPictures::scene(const assets::Frame& frame) const {
-    assets::check(frame.surfaces.size() == surfaces_.size(), "a frame lacks surfaces");
+    assets::check(frame.surfaces.size() == surfaces_.size(), "a frame has all surfaces");
     Scene scene = studio_;
     for (std::size_t s = 0; s < surfaces_.size(); ++s)
         scene.meshes.push_back(surfaces_[s].at(frame.surfaces[s]));

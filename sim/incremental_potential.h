@@ -15,9 +15,9 @@ namespace sim {
 ///
 ///   W(q) = 1/2 (q - q~)ᵀ M (q - q~) + Φ(x_n + dt T q),      A = M + dt² Tᵀ K T
 ///
-/// with Φ = elastic + hourglass + contact energies of corners, and energies of the grid's motion, M lumped on q, and q~ the velocity after transfer, external forces
-/// and damping. Statics is the same with M = 0, dt = 1 (q is then a displacement) and the external forces in Φ:
-/// W(u) = Φ(x_n + T u) - f·(x_n + T u).
+/// with Φ = elastic + hourglass + contact energies of corners, and energies of the grid's motion, M lumped on q, and q~ the
+/// velocity after transfer, external forces and damping. Statics is the same with M = 0, dt = 1 (q is then a displacement)
+/// and the external forces in Φ: W(u) = Φ(x_n + T u) - f·(x_n + T u).
 class IncrementalPotential : public Potential {
   public:
     /// The bodies' energies of corners, null for bodies of points, and their ranges in the field of all corners.

@@ -171,8 +171,8 @@ struct ContactPair {
     Friction friction;
 };
 
-/// Between bodies: by their surfaces inside the solve, with themselves too, or on the background grid after it, which is
-/// cheaper and lets them up to a domain into each other (grid_contact.h).
+/// Between bodies: by their surfaces inside the solve, with themselves too, or on the background grid, which is cheaper and
+/// lets them up to two domains into each other (grid_contact.h, grid_hold.h).
 struct Contact {
     enum class Mode { Surface, Grid } mode = Mode::Surface;
     Friction friction;

@@ -1,4 +1,4 @@
-// The method on one page: bodies, one solver, steps in time.
+// A scene of bodies that moves in time, and what can be asked of it.
 #pragma once
 
 #include "assets/frames/frame_cache.h"

@@ -144,7 +144,7 @@ class Stepper {
 
     /// What the end of a step takes over from its start.
     struct Memory {
-        double way = 0;       // after which its momentum counts: 0 none of it, 1 all
+        double way = 0;       // at its start (0) or its end (1): where the old momentum turns the body
         double undamped = 1;  // what damping leaves of velocities
         double unseen = 1;    // what stays of the part of them that nodes do not see (FLIP)
     };

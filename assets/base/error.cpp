@@ -9,7 +9,7 @@ Error::Error(ErrorKind kind, const std::string& message, std::string key)
 
 void check(bool condition, const char* what) {
     if (!condition)
-        throw std::logic_error(std::string("internal fault: ") + what);
+        throw std::logic_error(std::string("internal fault, as this does not hold: ") + what);
 }
 
 }  // namespace assets

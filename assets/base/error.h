@@ -31,7 +31,7 @@ class Error : public std::runtime_error {
     std::string key_;
 };
 
-/// Throws std::logic_error naming `what` unless `condition`: for faults of ours, in Release too.
+/// Throws std::logic_error unless `condition`, which `what` tells in words: for faults of ours, in Release too.
 void check(bool condition, const char* what);
 
 }  // namespace assets

@@ -16,7 +16,7 @@ namespace assets {
 class ByteWriter {
   public:
     void put_count(std::size_t count) {
-        check(count <= UINT32_MAX, "a count in a cache file exceeds 32 bits");
+        check(count <= UINT32_MAX, "a count in a cache file has 32 bits");
         const auto value = static_cast<std::uint32_t>(count);
         put_bytes(&value, sizeof value);
     }

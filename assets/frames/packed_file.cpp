@@ -38,7 +38,7 @@ void append_piece(std::string& packed, std::string_view piece, std::size_t word_
                                      BLOSC_LZ4_COMPNAME,
                                      block_bytes,
                                      1);
-    check(n > 0, "compression fails");
+    check(n > 0, "data can be compressed");
     const auto size = static_cast<PieceSize>(n);
     std::memcpy(packed.data() + size_at, &size, sizeof size);
     packed.resize(bytes_at + size);

@@ -24,7 +24,7 @@ std::vector<std::uint8_t> display_bytes(const Image& image) {
     std::vector<std::uint8_t> bytes;
     bytes.reserve(3 * image.pixels.size());
     for (const Vec3f& pixel : image.pixels) {
-        assets::check(pixel.allFinite(), "a pixel is not finite");
+        assets::check(pixel.allFinite(), "pixels are finite");
         const Vec3f shown = view_transform(pixel);
         for (int c = 0; c < 3; ++c)
             bytes.push_back(std::uint8_t(std::lround(255 * shown[c])));
@@ -124,11 +124,11 @@ void write_png(const std::filesystem::path& file, const Image& image, const Text
     std::string encoded;
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
     png_infop info = png ? png_create_info_struct(png) : nullptr;
-    assets::check(info != nullptr, "libpng could not start");
+    assets::check(info != nullptr, "libpng starts");
     png_set_write_fn(png, &encoded, append, no_flush);
     const bool done = encode(png, info, image, bytes.data(), texts.data(), int(texts.size()));
     png_destroy_write_struct(&png, &info);
-    assets::check(done, "libpng could not encode a picture");
+    assets::check(done, "libpng encodes a picture");
     assets::write_atomically(file, encoded);
 }
 

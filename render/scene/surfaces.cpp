@@ -95,12 +95,12 @@ std::vector<Vec3f> Surface::colors(const assets::SurfaceFrame& frame) const {
         result.assign(n, linear_from_srgb(look_.color));
     if (look_.color_by == ColorBy::Region) {
         result = cached_.varying ? frame.region_color : cached_.region_color;
-        assets::check(result.size() == n, "a surface lacks region colours");
+        assets::check(result.size() == n, "a surface has region colours");
     }
     if (look_.color_by == ColorBy::Stretch) {
         const auto stretch = frame.attributes.find("stretch");
         assets::check(stretch != frame.attributes.end() && stretch->second.size() == n,
-                      "a frame lacks stretches");
+                      "a frame has stretches");
         for (const float value : stretch->second)
             result.push_back(stretch_color(value));
     }
@@ -111,7 +111,7 @@ std::vector<Vec3f> Surface::colors(const assets::SurfaceFrame& frame) const {
 
 // Smooth all over, with the frame's normals: no edge of a heap of points is meant to be sharp.
 Mesh Surface::varying_at(const assets::SurfaceFrame& frame) const {
-    assets::check(frame.normals.size() == frame.positions.size(), "a frame lacks normals");
+    assets::check(frame.normals.size() == frame.positions.size(), "a frame has normals");
     return {frame.triangles, frame.positions, frame.normals, colors(frame), material_};
 }
 
@@ -120,7 +120,7 @@ Mesh Surface::at(const assets::SurfaceFrame& frame) const {
         return varying_at(frame);
     const std::size_t n = cached_.rest_positions.size();
     assets::check(frame.positions.size() == n && frame.normals.size() == n,
-                  "a frame does not fit its surface");
+                  "a frame fits its surface");
     Mesh mesh;
     mesh.material = material_;
     mesh.triangles = topology_.triangles;
