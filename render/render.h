@@ -13,7 +13,9 @@ namespace render {
 /// Holds what all frames of a shot share: the camera (placed once from the bounds of `frames`), lights and scene.
 class Renderer {
   public:
-    Renderer(const assets::FrameCacheReader& cache, const std::vector<int>& frames, const Options& options);
+    Renderer(const assets::FrameCacheReader& cache,
+             const std::vector<int>& frames,
+             const Options& options);
     ~Renderer();
 
     /// The picture of one frame, linear Rec.709. The same bytes for any number of threads.

@@ -17,8 +17,8 @@ struct Shot {
     int format = 1;
     std::string name;
     FrameRange frames;  // simulated from first to last; every step-th one is rendered
-    double fps =
-        24;  // simulated time per frame is 1/fps; the first frame is the state at time 0
+    // Simulated time per frame is 1/fps; the first frame is the state at time 0.
+    double fps = 24;
     sim::Scene scene;
     render::Options render;
     std::filesystem::path output;  // folder of everything that the shot leaves behind

@@ -26,7 +26,8 @@ void read_words(const Table& words, Reading& reading, Shot& shot) {
     shot.scene.pins = read_pins(root, shot.scene.bodies);
     shot.scene.forces = read_forces(root, shot.scene.bodies);
     shot.scene.colliders = read_colliders(root, shot.frames.first, shot.fps);
-    shot.scene.contact = read_contact(root.table("contact"), shot.scene.bodies, shot.scene.solver.steps);
+    shot.scene.contact =
+        read_contact(root.table("contact"), shot.scene.bodies, shot.scene.solver.steps);
     shot.scene.probes = read_probes(root, shot.scene.bodies);
 
     read_picture(picture, shot.scene.colliders, shot.render);

@@ -12,8 +12,8 @@ namespace sim {
 
 namespace {
 
-constexpr double contact_stiffness =
-    100;  // k / (E s): depth below 1e-3 s under 10% of E as pressure
+// k / (E s): depth below 1e-3 s under 10% of E as pressure.
+constexpr double contact_stiffness = 100;
 
 /// Young's modulus of a domain's mixture.   [Pa]
 double young_modulus(const Lattice& lattice, int p) {

@@ -11,7 +11,8 @@ namespace sim {
 /// All that the next steps depend on.
 struct Snapshot {
     State state;
-    std::vector<std::vector<char>> enriched;  // (#bodies, #domains) of those that have such domains
+    // (#bodies, #domains) of those that have such domains.
+    std::vector<std::vector<char>> enriched;
 };
 
 std::vector<std::byte> write_checkpoint(const Snapshot& snapshot);

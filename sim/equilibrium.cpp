@@ -14,9 +14,7 @@ constexpr int most_halvings = 8;  // of the way to an equilibrium
 
 }  // namespace
 
-void Stepper::equilibrium(State& state,
-                          double time,
-                          const std::function<void(double)>& watch) {
+void Stepper::equilibrium(State& state, double time, const std::function<void(double)>& watch) {
     watch_ = [&] {
         if (watch)
             watch(state.time);

@@ -14,15 +14,15 @@ constexpr double safety = 0.9;            // of the stable step of bodies as the
 constexpr double safety_of_points = 0.7;  // of that of points at rest: pressing stiffens
 constexpr double steady = 0.01;   // change of how stiff bodies are, from measure to measure
 constexpr int steady_drifts = 8;  // after which what is steady is measured again
-constexpr double most_excited =
-    1.9;  // w dt of the motion seen; beyond 2 it grows without bound
+// w dt of the motion seen; beyond 2 it grows without bound.
+constexpr double most_excited = 1.9;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int contact_passes = 6;
 constexpr double depth_tolerance = 1e-3;  // of a linearised depth, in domain edges
-constexpr double hard_hit =
-    5e-3;  // depth that a drift would go into a collider, in domain edges
-constexpr double noise =
-    1e-8;  // of the kinetic energy: strain energy too small to tell a frequency
+// Depth that a drift would go into a collider, in domain edges.
+constexpr double hard_hit = 5e-3;
+// Of the kinetic energy: strain energy too small to tell a frequency.
+constexpr double noise = 1e-8;
 
 double sum_of(const Vec3p& v) {
     return v[0] + v[1] + v[2];
@@ -376,8 +376,7 @@ void Stepper::set_explicit_reactions(const State& state, double dt) {
         const int c = prescribed_.corners[i];
         const Vec3p v = (x_end_[c] - state.x[c]) / dt;
         const Vec3p inertia =
-            assembly_.mass[c]
-            * ((v_end_[c] - state.v[c]) / dt + scene_.solver.damping * v);
+            assembly_.mass[c] * ((v_end_[c] - state.v[c]) / dt + scene_.solver.damping * v);
         const Vec3p gradient =
             (0.5 * (gradient_[c] + end_gradient_[c]) + inner_gradient_[i]) / n_drifts_;
         reaction_[c] = (inertia - assembly_.force[c] + gradient)

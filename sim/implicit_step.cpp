@@ -41,8 +41,7 @@ bool Stepper::try_bdf2(State& state, double dt) {
     Field x_before = state.x, v_before = state.v;
     end_implicit(state, dt);
     if (has_event) {
-        for (Field* before :
-             {&x_before, &v_before, &state.grid.x_before, &state.grid.v_before})
+        for (Field* before : {&x_before, &v_before, &state.grid.x_before, &state.grid.v_before})
             before->clear();
     }
     state.x_before = std::move(x_before);

@@ -12,8 +12,8 @@ namespace sim {
 namespace {
 
 constexpr int chunk = 8192;
-constexpr double rounding =
-    1e-14;  // of a position after the sums of a step, relative to the largest coordinate
+// Of a position after the sums of a step, relative to the largest coordinate.
+constexpr double rounding = 1e-14;
 
 /// Of all vectors, disregarding signs.
 double largest_magnitude(const Field& field) {

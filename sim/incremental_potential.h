@@ -24,8 +24,8 @@ class IncrementalPotential : public Potential {
     struct ElasticBody {
         ElasticEnergy* elasticity = nullptr;
         int begin = 0, end = 0;
-        double energy_scale =
-            0;  // Σ V (lambda + 2 mu): its energy at rest is the difference of terms as large [J]
+        // Σ V (lambda + 2 mu): its energy at rest is the difference of terms as large [J]
+        double energy_scale = 0;
     };
 
     IncrementalPotential(const CornerMap& map,

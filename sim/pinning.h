@@ -17,7 +17,7 @@ struct Prescribed {
     Field is_free;  // (#C) 1 in free components, 0 in prescribed ones
     Field target;   // (#C) position at the end of the step in prescribed components [m]
     std::vector<HeldBy> holder;  // (#C)
-    std::vector<int> corners;  // those with a prescribed component, in order
+    std::vector<int> corners;    // those with a prescribed component, in order
 };
 
 /// Whether a pin has not been released by `time`.

@@ -77,8 +77,7 @@ void Stepper::commit_affine(State& state, const Field& q) const {
     for (std::size_t b = 0; b < assembly_.bodies.size(); ++b) {
         // B D⁻¹ of linear kernels is their slope, also on a face of cells, where both B and D vanish.
         const bool is_linear = ranges_[b].kernel == Kernel::Linear;
-        const double inverse_D =
-            is_linear ? 1 : 1 / map_.second_moment(static_cast<int>(b));
+        const double inverse_D = is_linear ? 1 : 1 / map_.second_moment(static_cast<int>(b));
         map_.visit_gradients(static_cast<int>(b),
                              is_linear ? CornerMap::Factor::Slope : CornerMap::Factor::Moment,
                              q,

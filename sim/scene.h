@@ -59,15 +59,7 @@ struct Selector {
         std::vector<Selector> of;  // exactly one
     };
 
-    std::variant<All,
-                 assets::Shape,
-                 HalfSpace,
-                 MeshMaterial,
-                 Inside,
-                 Depth,
-                 AllOf,
-                 AnyOf,
-                 Not>
+    std::variant<All, assets::Shape, HalfSpace, MeshMaterial, Inside, Depth, AllOf, AnyOf, Not>
         is;
     std::string key;  // the shot file's path of this selector, for error messages
 };
@@ -196,8 +188,8 @@ struct SolverOptions {
     Method method = Method::Enriched;
     std::optional<Kernel> kernel;  // empty: quadratic for material points, else linear
     Transfer transfer = Transfer::Flip;
-    double pic_rate =
-        5;  // FLIP keeps exp(-pic_rate dt) of what a grid at rest cannot see per step [1/s]
+    // FLIP keeps exp(-pic_rate dt) of what a grid at rest cannot see per step [1/s]
+    double pic_rate = 5;
     EnrichmentCriteria enrich;
     Steps steps = Steps::Implicit;
     Quadrature quadrature = Quadrature::OnePoint;

@@ -6,7 +6,6 @@
 #include "sim/report.h"
 #include "sim/stepper.h"
 
-
 namespace sim {
 
 namespace {

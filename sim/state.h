@@ -21,23 +21,25 @@ namespace sim {
 /// weights that change scramble what nodes do not see, and each way between corners and nodes blunts it. Needed is such a
 /// grid only where bodies meet on it; else this one is used, with the same nodes at the start.
 struct MovingGrid {
-    Field made_at;             // (#C) where corners were when the map was made [m]
-    std::vector<char> free;    // (#C) which of them were free
-    std::vector<int> held;     // corners that pins held then
-    Field x, v;                // (#nodes) positions [m], velocities [m/s]
-    Field x_before, v_before;  // where the last step began; BDF2 alone, empty where it has no such step
+    Field made_at;           // (#C) where corners were when the map was made [m]
+    std::vector<char> free;  // (#C) which of them were free
+    std::vector<int> held;   // corners that pins held then
+    Field x, v;              // (#nodes) positions [m], velocities [m/s]
+    // Where the last step began; BDF2 alone, empty where it has no such step.
+    Field x_before, v_before;
 };
 
 /// Indexed by corner. All of it belongs in a checkpoint.
 struct State {
     double time = 0;  // [s]
     Field x, v;       // positions [m], velocities [m/s]
-    Field inner_force,
-        inner_force_before;  // of insides and contacts on corners, where the last step and the one before ended [N]
-    Field x_before,
-        v_before;  // where the last step began; kept by BDF2 alone, empty before its first step
+    // Of insides and contacts on corners, where the last step and the one before ended [N]
+    Field inner_force, inner_force_before;
+    // Where the last step began; kept by BDF2 alone, empty before its first step.
+    Field x_before, v_before;
     MovingGrid grid;  // empty where every step makes a map of its own, of a grid at rest
-    std::vector<Gradient> affine;  // C = B D⁻¹ of [JSS15], how v changes around x; of APIC alone [1/s]
+    // C = B D⁻¹ of [JSS15], how v changes around x; of APIC alone [1/s]
+    std::vector<Gradient> affine;
     std::vector<PointState> points;     // (#bodies) empty for those of domains
     std::vector<double> top_speed;      // (#bodies) that any corner has reached lately [m/s]
     std::vector<HeldContact> contacts;  // that the last step ended with

@@ -144,7 +144,8 @@ class Stepper {
 
     /// What the end of a step takes over from its start.
     struct Memory {
-        double way = 0;       // at its start (0) or its end (1): where the old momentum turns the body
+        // At its start (0) or its end (1): where the old momentum turns the body.
+        double way = 0;
         double undamped = 1;  // what damping leaves of velocities
         double unseen = 1;    // what stays of the part of them that nodes do not see (FLIP)
     };
@@ -246,7 +247,7 @@ class Stepper {
     bool has_points_ = false;
     IncrementalPotential potential_;
     NewtonScratch scratch_;
-    NewtonSummary summary_;  // of the last solve
+    NewtonSummary summary_;        // of the last solve
     std::function<void()> watch_;  // of the call of advance() or equilibrium()
     Prescribed prescribed_;
     std::vector<char> free_;            // (#C)
@@ -283,10 +284,10 @@ class Stepper {
     Field v_end_;                    // (#C) and how fast, of explicit steps [m/s]
     std::vector<double> speed_;      // (#bodies) of the fastest corner [m/s]
     Field gradient_, end_gradient_;  // of explicit steps, at the start and the end (#C) [N]
-    std::vector<double>
-        stiffening_;  // (#bodies) ElasticEnergy::stiffening() at the last measure
-    int drifts_since_measure_ = 0,
-        measure_after_ = 1;            // drifts: since then, and until the next
+    // (#bodies) ElasticEnergy::stiffening() at the last measure.
+    std::vector<double> stiffening_;
+    // Drifts: since then, and until the next.
+    int drifts_since_measure_ = 0, measure_after_ = 1;
     int n_drifts_ = 1;                 // of the step, if it is explicit
     double quiet_drifts_ = 0;          // where it ends
     Field x_drift_, gradient_before_;  // where its last drift begins, of several (#C) [m], [N]

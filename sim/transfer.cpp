@@ -10,10 +10,10 @@ namespace sim {
 namespace {
 
 constexpr int chunk = 8192;
-constexpr double thin =
-    0.01;  // what does not turn about its own axis: a body no thicker than that, in cells
-constexpr int spin_passes =
-    3;  // each leaves a share as large as the angle that a step turns by
+// What does not turn about its own axis: a body no thicker than that, in cells.
+constexpr double thin = 0.01;
+// Each leaves a share as large as the angle that a step turns by.
+constexpr int spin_passes = 3;
 
 }  // namespace
 

@@ -103,8 +103,8 @@ std::filesystem::path temporary_of(const std::filesystem::path& path) {
 
 void remove_files(const std::filesystem::path& folder,
                   const std::function<bool(const std::string&)>& ours) {
-    std::vector<std::filesystem::path>
-        found;  // all names first: removing may disturb the listing
+    // All names first: removing may disturb the listing.
+    std::vector<std::filesystem::path> found;
     for (const auto& entry : std::filesystem::directory_iterator(folder))
         if (ours(entry.path().filename().string()))
             found.push_back(entry.path());

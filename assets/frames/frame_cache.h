@@ -41,8 +41,8 @@ struct CachedSurface {
 struct SurfaceFrame {
     std::vector<Vec3f> positions;  // (#V) [m]
     std::vector<Vec3f> normals;    // (#V) unit
-    std::map<std::string, std::vector<float>>
-        attributes;  // each (#V), e.g. "stretch", "enriched"
+    // Each (#V), e.g. "stretch", "enriched".
+    std::map<std::string, std::vector<float>> attributes;
 
     // Of varying surfaces alone, as in CachedSurface.
     std::vector<std::array<int, 3>> triangles = {};  // (#T)

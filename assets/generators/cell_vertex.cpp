@@ -15,8 +15,8 @@ namespace {
 // Close to an edge that of 35 degrees counts; a whole cell may see a face from one of twenty places only.
 constexpr double sharp = 0.09, suspect = 0.03;
 
-constexpr double facing =
-    -0.2;  // least cosine between the normals of faces that meet in a cell
+// Least cosine between the normals of faces that meet in a cell.
+constexpr double facing = -0.2;
 
 // Bend of a cell, in its edges, up to which it holds no edge of the shape.
 constexpr double flat = 0.05;

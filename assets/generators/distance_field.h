@@ -26,8 +26,8 @@ class DistanceField {
 
     Vec3 low_{0, 0, 0};  // of the grid's first value [m]
     double voxel_ = 0;
-    double clearance_ =
-        0;  // from the solid's bounds to where no values are left to interpolate [m]
+    // From the solid's bounds to where no values are left to interpolate [m]
+    double clearance_ = 0;
     std::array<std::size_t, 3> n_{};  // values along each axis
     std::vector<float> values_;
 };

@@ -49,8 +49,8 @@ class PointCells {
     const std::vector<Vec3>& points_;
     double cell_;
     std::vector<int> order_;  // points, by cell, then by index
-    std::unordered_map<std::uint64_t, std::pair<int, int>>
-        ranges_;  // cell -> its part of order_
+    // Cell -> its part of order_.
+    std::unordered_map<std::uint64_t, std::pair<int, int>> ranges_;
 };
 
 }  // namespace assets

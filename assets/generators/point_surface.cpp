@@ -25,8 +25,8 @@ using Sampler = openvdb::tools::GridSampler<FloatGrid, openvdb::tools::BoxSample
 
 // All lengths in here are in voxels, of which two make a spacing.
 constexpr double spacing = 2;
-constexpr double reach =
-    2 * spacing;  // of the kernel: irregularities of a spacing are smoothed away
+// Of the kernel: irregularities of a spacing are smoothed away.
+constexpr double reach = 2 * spacing;
 
 // So that a flat side lies half a spacing outside of its outermost points, within a few hundredths in clouds in cubic
 // order, turned or not, and without order. By chance a lone point has its volume, too: 4/3 π 0.62³ = 1.

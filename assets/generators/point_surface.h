@@ -14,8 +14,8 @@ struct PointSurface {
     std::vector<Vec3f> positions;  // (#V) [m]
     std::vector<Vec3f> normals;    // (#V) unit, along the field's gradient, outwards
     std::vector<std::array<int, 3>> triangles;  // (#T) counter-clockwise from outside; closed
-    std::string
-        vdb;  // an OpenVDB file: φ in metres, a level set named "surface", a voxel to each side
+    // An OpenVDB file: φ in metres, a level set named "surface", a voxel to each side.
+    std::string vdb;
 };
 
 /// `spacing` is the distance of neighbours in the cloud at rest, the cube root of the volume that a point stands

@@ -16,7 +16,9 @@ struct Image {
 };
 
 /// Writes 8-bit sRGB, atomically, with `text` as PNG text chunks. The tone curve is that of view_transform().
-void write_png(const std::filesystem::path& file, const Image& image, const std::map<std::string, std::string>& text);
+void write_png(const std::filesystem::path& file,
+               const Image& image,
+               const std::map<std::string, std::string>& text);
 
 /// The text chunks of a PNG; empty where the file is missing or not a whole PNG.
 std::map<std::string, std::string> read_png_text(const std::filesystem::path& file);

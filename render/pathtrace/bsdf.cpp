@@ -128,8 +128,8 @@ Vec3f Bsdf::evaluate(const Vec3f& wi) const {
     const float cosine = std::abs(wi.z());
     if (cosine == 0 || (wi.z() < 0 && !clear_))
         return Vec3f::Zero();
-    const float sides =
-        clear_ ? 0.5f : 1.0f;  // a thin skin scatters half of its light to each side
+    // A thin skin scatters half of its light to each side.
+    const float sides = clear_ ? 0.5f : 1.0f;
     Vec3f value = color_ * (base_share(cosine) * diffuse_ * sides * cosine / pi);
     if (coat_ && wi.z() > 0)
         value.array() += coat_->evaluate(wo_, wi);

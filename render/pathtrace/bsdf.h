@@ -31,8 +31,8 @@ class Coat {
     float mean_albedo() const { return mean_albedo_; }
 
   private:
-    static constexpr int n_cosines =
-        33;  // nodes at cosine = (i / 32)²: close where the albedo is steep
+    // Nodes at cosine = (i / 32)²: close where the albedo is steep.
+    static constexpr int n_cosines = 33;
     float alpha_;
     std::array<float, n_cosines> albedo_;
     float mean_albedo_;

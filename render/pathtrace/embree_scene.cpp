@@ -18,8 +18,8 @@ namespace render {
 namespace {
 
 constexpr float min_blurred_roughness = 0.5f;
-constexpr unsigned flush_and_zero =
-    _MM_FLUSH_ZERO_ON | 0x0040;  // 0x0040: denormal inputs are zero
+// 0x0040: denormal inputs are zero.
+constexpr unsigned flush_and_zero = _MM_FLUSH_ZERO_ON | 0x0040;
 
 struct Fault {
     RTCError code = RTC_ERROR_NONE;

@@ -22,8 +22,8 @@ float importance(const RectangleLight& light, const Receiver& receiver) {
     if (along <= 0)
         return 0;
     const float area_norm = area.norm();
-    const float distance_squared =
-        away.squaredNorm() + area_norm / 4;  // bounded near the light
+    // Bounded near the light.
+    const float distance_squared = away.squaredNorm() + area_norm / 4;
     const float distance = std::sqrt(distance_squared);
     const float facing = -receiver.normal.dot(away) / distance;
     const float cosine = std::max(receiver.both_sides ? std::abs(facing) : facing, 0.03f);

@@ -12,10 +12,10 @@ namespace render {
 
 namespace {
 
-constexpr float skin_per_opacity =
-    0.5f;  // the rest of a clear body's opacity lies in its inside
-constexpr float depth_per_opacity =
-    2.0f;  // optical depth across the body, in units of -ln(colour)
+// The rest of a clear body's opacity lies in its inside.
+constexpr float skin_per_opacity = 0.5f;
+// Optical depth across the body, in units of -ln(colour).
+constexpr float depth_per_opacity = 2.0f;
 
 Vec3f mean(const std::vector<Vec3f>& values) {
     Vec3f sum = Vec3f::Zero();

@@ -34,8 +34,8 @@ void read_snow(TableReader& table, sim::SnowOptions& snow) {
 
 void warn_of_odd_values(TableReader& table, const sim::Region& region) {
     constexpr double softest = 100;  // Pa; below it "kPa" was probably left out
-    constexpr double stiffest_nu =
-        0.45;  // above it domains lock: they become too stiff in bending
+    // Above it domains lock: they become too stiff in bending.
+    constexpr double stiffest_nu = 0.45;
     if (table.has("young_modulus") && region.young_modulus > 0
         && region.young_modulus < softest)
         table.warning("young_modulus",

@@ -23,8 +23,8 @@ namespace shots {
 struct Reading {
     std::filesystem::path folder;  // of the shot file: relative mesh paths start here
     Report report;
-    assets::Fingerprint
-        resolved;  // dotted key -> value of everything that decides the simulation
+    // Dotted key -> value of everything that decides the simulation.
+    assets::Fingerprint resolved;
     std::map<std::string, assets::Shape> shapes;  // of [shapes], by name, as far as it was read
 };
 

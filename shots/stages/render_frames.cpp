@@ -58,9 +58,10 @@ std::vector<Picture> planned_pictures(const RenderJob& job,
     std::vector<Picture> pictures;
     for (const int number : job.frames) {
         stamp["frame"] = fmt::format("{:016x}", cache.checksum(number));
-        pictures.push_back({number,
-                            job.images / fmt::format("{}.{}.png", job.name, assets::padded(number)),
-                            assets::digest(stamp)});
+        pictures.push_back(
+            {number,
+             job.images / fmt::format("{}.{}.png", job.name, assets::padded(number)),
+             assets::digest(stamp)});
     }
     return pictures;
 }

@@ -14,8 +14,8 @@ struct RenderJob {
     render::Options options;
     std::string name;         // of the shot: pictures are NAME.####.png
     std::vector<int> frames;  // to render, ascending
-    std::vector<int>
-        shot_frames;  // all of the shot: the camera frames those that the cache holds
+    // All of the shot: the camera frames those that the cache holds.
+    std::vector<int> shot_frames;
     std::filesystem::path cache;   // folder of the frame cache
     std::filesystem::path images;  // folder of the pictures
     bool overwrite = false;        // render again what is there already

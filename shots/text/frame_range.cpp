@@ -9,8 +9,8 @@
 namespace shots {
 namespace {
 
-constexpr int largest_number =
-    10'000'000;  // far beyond any shot, small enough to count without overflow
+// Far beyond any shot, small enough to count without overflow.
+constexpr int largest_number = 10'000'000;
 
 [[noreturn]] void refuse(std::string_view text, const std::string& reason) {
     throw assets::Error(

@@ -13,8 +13,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double impact_depth = 0.01;  // in domain edges
 constexpr double margin = 0.5;         // of the domain's edge, where corners count as near
-constexpr double share_of_thickness =
-    0.4;  // that a corner may pass in a step where it is about to touch
+// That a corner may pass in a step where it is about to touch.
+constexpr double share_of_thickness = 0.4;
 
 /// How far outside a collider a corner touches it at most.   [m]
 double longest_reach(const std::vector<ContactCorner>& corners) {

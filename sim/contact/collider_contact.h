@@ -16,8 +16,8 @@ namespace sim {
 struct ContactCorner {
     int corner = 0;  // in the field of all corners
     int body = 0;
-    double outside =
-        0;  // distance that it sticks out of the body's surface at rest; < 0: lies inside [m]
+    // Distance that it sticks out of the body's surface at rest; < 0: lies inside [m]
+    double outside = 0;
     double stiffness = 0;  // k of the penalty [N/m]
     double mass = 0;       // [kg]
     double edge = 0;       // of its body's domains, s [m]
@@ -136,8 +136,8 @@ class ColliderContact : public ContactEnergy {
     std::vector<Pair> pairs_;        // (#near × #colliders)
     std::vector<double> top_speed_;  // (#bodies) of this step; none before the first [m/s]
     double dt_ = 0;                  // of this step [s]
-    std::vector<Pose> start_poses_,
-        poses_;  // (#colliders) at the start and the end of the step
+    // (#colliders) at the start and the end of the step.
+    std::vector<Pose> start_poses_, poses_;
 
     struct Block {
         int corner = 0;

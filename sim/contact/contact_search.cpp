@@ -15,10 +15,10 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int vertex_chunk = 256;
 constexpr int bisections = 6;  // of the way into a body
-constexpr double least_gradient =
-    0.1;  // of the distance; where it is less, in the middle of a body, no side is nearer
-constexpr double seam =
-    1e-3;  // beyond a domain where rounding may put what is in its neighbour, in domain edges
+// Of the distance; where it is less, in the middle of a body, no side is nearer.
+constexpr double least_gradient = 0.1;
+// Beyond a domain where rounding may put what is in its neighbour, in domain edges.
+constexpr double seam = 1e-3;
 
 /// A deformed domain. The gradient at its centre, of the map from its cube to the world, solves for the linear part of the way
 /// back.

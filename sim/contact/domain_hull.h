@@ -17,8 +17,8 @@ struct HullDirections {
 
     HullDirections() {
         for (int k = 0; k < 4 * n_fours; ++k) {
-            const int code =
-                std::min(k, n - 1) + 14;  // one half of the 26 neighbours of a cell
+            // One half of the 26 neighbours of a cell.
+            const int code = std::min(k, n - 1) + 14;
             const Vec3 unit = Vec3(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1).normalized();
             x[k / 4][k % 4] = unit.x();
             y[k / 4][k % 4] = unit.y();

@@ -17,8 +17,8 @@ namespace sim {
 namespace {
 
 constexpr int most_rounds = 4;
-constexpr double seen_cells =
-    2.5;                      // a node is up to one off a body, and sees the other for 1.5
+// A node is up to one off a body, and sees the other for 1.5.
+constexpr double seen_cells = 2.5;
 constexpr int n_normals = 3;  // of both bodies together, and of each
 constexpr double much_less = 2;
 // Of a body at a node, in corners. One that hardly has a part in it would be held there as if it were all of it.
@@ -47,8 +47,8 @@ struct Side {
 
 struct Node {
     std::array<Side, 2> side;
-    std::array<Vec3p, 3>
-        normals;             // out of the first body: entry n of [k] is component k of the n-th
+    // Out of the first body: entry n of [k] is component k of the n-th.
+    std::array<Vec3p, 3> normals;
     bool is_pushed = false;  // in this drift
 
     bool is_shared() const { return std::min(side[0].share, side[1].share) > least_share; }

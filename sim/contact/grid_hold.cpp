@@ -11,8 +11,8 @@ namespace {
 // Of k dt² / m: much firmer costs iterations, much softer passes.
 constexpr double firmness = 16;
 constexpr double settled = 1e-2;  // of a change of a force, against the largest
-constexpr double least_way =
-    1e-6;  // by which that force moves what it acts on, in domain edges
+// By which that force moves what it acts on, in domain edges.
+constexpr double least_way = 1e-6;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool is_before(const GridHold::Contact& contact, const GridHold::Place& place) {

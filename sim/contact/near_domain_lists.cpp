@@ -33,8 +33,8 @@ double NearDomainLists::approach(const List& list, int a, int b, const Field& x)
     // A vertex moves in the box of what its corners move, made wider where not all of its weights are positive; the centre
     // of a domain in that of its own. What is continued moves as a mean of corners and a multiple of what these part
     // (FoldWatch): its distance from the centre changes by no more than that multiple, and once more, of the size of the box.
-    const double continued =
-        std::pow(1 + 2 * list.beyond, 3);  // the sum of its weights without their signs
+    // The sum of its weights without their signs.
+    const double continued = std::pow(1 + 2 * list.beyond, 3);
     const PaddedBounds of_a = moved(bodies_[a], list.of_a, x),
                        of_b = moved(bodies_[b], list.of_b, x);
     const Vec3p middle = (of_a.low + of_a.high) / 2,

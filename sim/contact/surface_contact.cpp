@@ -12,19 +12,19 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double stiffness = 40;  // k / (E A / s): depth s/40 under a pressure E
-constexpr double wave_factor =
-    32;  // of speed over wave speed, where bodies meet faster than that
-constexpr int most_looks =
-    8;  // at a body on its way; one that moves by more domain edges in itself is not waited for
+// Of speed over wave speed, where bodies meet faster than that.
+constexpr double wave_factor = 32;
+// At a body on its way; one that moves by more domain edges in itself is not waited for.
+constexpr int most_looks = 8;
 constexpr double share_of_thickness = 0.4;  // that bodies may approach in a step
-constexpr double rest_recovery =
-    0.1;  // of a gap that had to be shifted, in domain edges per second
-constexpr double impact_recovery =
-    0.25;  // the same, as a share of the speed at which bodies may meet
+// Of a gap that had to be shifted, in domain edges per second.
+constexpr double rest_recovery = 0.1;
+// The same, as a share of the speed at which bodies may meet.
+constexpr double impact_recovery = 0.25;
 constexpr double same_plane = 0.97;  // cosine between the normals of what is one plane, bent
 constexpr double rounding = 1e-12;   // of speeds
-constexpr double least_margin =
-    0.25;  // around bodies where vertices are looked at, in domain edges
+// Around bodies where vertices are looked at, in domain edges.
+constexpr double least_margin = 0.25;
 
 }  // namespace
 

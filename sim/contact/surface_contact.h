@@ -126,8 +126,8 @@ class SurfaceContact : public ContactEnergy {
         PaddedBounds bounds;
         Vec3 velocity{0, 0, 0};  // mean of the corners [m/s]
         double most_spread = 0;  // at least `spread`, from a box around the velocities [m/s]
-        std::optional<double> spread =
-            {};  // of the corners' velocities around it, at most [m/s]
+        // Of the corners' velocities around it, at most [m/s]
+        std::optional<double> spread = {};
     };
 
     /// Of the Hessian, where it is not zero.

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double enough = 1e-4;  // of a depth that may stay, in domain edges
 constexpr int most_rounds = 8;
-constexpr double share_of_margin =
-    0.06;  // that corners may go: what lies outside of them goes up to eight times as far
+// That corners may go: what lies outside of them goes up to eight times as far.
+constexpr double share_of_margin = 0.06;
 
 std::array<Impulses::Share, 16> shares_of(const ContactPoint& contact) {
     std::array<Impulses::Share, 16> shares;

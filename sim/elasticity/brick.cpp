@@ -170,8 +170,8 @@ class SumsAtCorners {
 
     const Brick& brick_;
     const BrickFields& fields_;
-    Four before_[3] =
-        {};  // of the right corners of the batch before, where this one continues it
+    // Of the right corners of the batch before, where this one continues it.
+    Four before_[3] = {};
 };
 
 /// F of a batch; the identity in empty slots. ∂x/∂X_j = h_j / (4 s).

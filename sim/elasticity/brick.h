@@ -13,8 +13,8 @@ namespace sim {
 /// first, so that every access is one contiguous vector. Slots without a domain, row ends among them, have zero volume and
 /// moduli and take part as undeformed.
 struct Batch {
-    std::array<int, 4>
-        row;  // places of corners 0, 2, 4 and 6 of the first lane; 1, 3, 5 and 7 follow
+    // Places of corners 0, 2, 4 and 6 of the first lane; 1, 3, 5 and 7 follow.
+    std::array<int, 4> row;
     std::array<int, lane_count> domain;  // -1 where none
     bool continues = false;  // whether its rows begin where those of the batch before end
 };

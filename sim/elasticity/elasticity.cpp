@@ -84,8 +84,8 @@ Elasticity::Elasticity(const Lattice& lattice, const Body& body) : edge_(lattice
         const int n_bricks = (n + largest_brick[k] - 1) / largest_brick[k];
         size[k] = (n + n_bricks - 1) / n_bricks;
     }
-    std::map<std::array<int, 3>, std::vector<std::vector<int>>>
-        layers_of_brick;  // domains, keyed z, y, x: lattice order
+    // Domains, keyed z, y, x: lattice order.
+    std::map<std::array<int, 3>, std::vector<std::vector<int>>> layers_of_brick;
     std::size_t n_layers = 0;
     {
         std::map<std::array<int, 3>, std::vector<int>> domains_of_brick;
@@ -131,7 +131,8 @@ void Elasticity::fill_brick(const Lattice& lattice,
     Brick brick;
     const BrickLayout layout = best_brick_layout(lattice, domains);
     const int n_places = static_cast<int>(layout.corner.size());
-    brick.n_local = (n_places / lane_count + 3) * lane_count;  // whole batches, and one after the last
+    // Whole batches, and one after the last.
+    brick.n_local = (n_places / lane_count + 3) * lane_count;
     brick.first_local = static_cast<int>(corner_of_local_.size());
     corner_of_local_.insert(corner_of_local_.end(), layout.corner.begin(), layout.corner.end());
     corner_of_local_.resize(brick.first_local + brick.n_local, -1);

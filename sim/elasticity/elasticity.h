@@ -52,10 +52,10 @@ class Elasticity : public ElasticEnergy {
     double edge_ = 0;
     std::vector<Brick> bricks_;     // by colour
     std::vector<int> color_start_;  // first brick of each colour, and their number
-    std::vector<int>
-        corner_of_local_;  // (#local of all bricks) -1 past the last one of a brick
-    std::vector<char>
-        adds_;  // (#local of all bricks) whether a brick before has written to the corner
+    // (#local of all bricks) -1 past the last one of a brick.
+    std::vector<int> corner_of_local_;
+    // (#local of all bricks) whether a brick before has written to the corner.
+    std::vector<char> adds_;
 };
 
 }  // namespace sim

@@ -59,8 +59,8 @@ template <class S>
 
 [[gnu::always_inline]] inline Deformation<GaussLanes> at_points(const CubeGradients& b,
                                                                 const CornerValues& x) {
-    alignas(64) double
-        F[9][8];  // by halves: vectors of four live in registers on both instruction sets
+    // By halves: vectors of four live in registers on both instruction sets.
+    alignas(64) double F[9][8];
     for (int k = 0; k < 9; ++k)
         for (const int half : {0, 4}) {
             Lanes sum{};

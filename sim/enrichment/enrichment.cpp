@@ -58,8 +58,8 @@ std::pair<double, double> principal_stretches(const Lattice& lattice,
 }  // namespace
 
 std::vector<int> boundary_domains(const Lattice& lattice) {
-    std::map<std::array<int, 3>, int>
-        first_at;  // of the domains of a cell, which follow each other
+    // Of the domains of a cell, which follow each other.
+    std::map<std::array<int, 3>, int> first_at;
     for (int p = lattice.n_domains() - 1; p >= 0; --p)
         first_at[lattice.cell[p]] = p;
     std::vector<int> boundary;

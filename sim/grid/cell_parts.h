@@ -13,10 +13,10 @@ namespace sim {
 /// not move each other (virtual nodes, as [MBF04] has them for cuts). "Cell" stands for where stencils have their lowest node.
 struct CellParts {
     std::vector<int> part_of_corner;  // (#corners of the body)
-    std::vector<std::array<int, 3>>
-        lowest;  // (#parts) node of the stencil, in order of cells, x fastest
-    std::vector<int>
-        copies;  // (#parts × n³) the nodes of each part's stencil: the same number is the same one
+    // (#parts) node of the stencil, in order of cells, x fastest.
+    std::vector<std::array<int, 3>> lowest;
+    // (#parts × n³) the nodes of each part's stencil: the same number is the same one.
+    std::vector<int> copies;
     int n_copies = 0;
 
     /// Node of the stencil of a corner of the body, in cells.

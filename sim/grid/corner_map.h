@@ -223,8 +223,8 @@ class CornerMap {
     // Scratch of rebuild(), kept to avoid allocations in every step.
     std::vector<int> slave_order_, cell_of_slave_, base_, placed_;
     // Of cells and nodes in a box; between uses 0, 0 and -1.
-    std::vector<int> cell_slave_,
-        node_of_;                          // slaves of a cell, later the next one's place; node
+    // Slaves of a cell, later the next one's place; node.
+    std::vector<int> cell_slave_, node_of_;
     std::vector<std::uint64_t> occupied_;  // a bit for each cell
 };
 

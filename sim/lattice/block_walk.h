@@ -53,8 +53,8 @@ class BlockWalk {
             Vec3(block.low[0], block.low[1], block.low[2]) + Vec3::Constant(block.size / 2.0);
         const Vec3 X = grid_.point(
             cell_[0] + middle.x() / m, cell_[1] + middle.y() / m, cell_[2] + middle.z() / m);
-        const double radius =
-            std::sqrt(3.0) * (block.size - 1) / 2 * grid_.edge / m;  // to its outermost samples
+        // To its outermost samples.
+        const double radius = std::sqrt(3.0) * (block.size - 1) / 2 * grid_.edge / m;
         double distance = -std::numeric_limits<double>::infinity();
         if (!known.inside) {
             const double furthest = radius + sampling_.near;

@@ -21,16 +21,16 @@ struct Lattice {
     double edge = 0;       // s [m]
     Vec3 origin{0, 0, 0};  // rest position of the corner with coordinates (0,0,0) [m]
 
-    std::vector<std::array<int, 3>>
-        cell;  // (#D) integer coordinates of each domain's lowest corner; not always unique
+    // (#D) integer coordinates of each domain's lowest corner; not always unique.
+    std::vector<std::array<int, 3>> cell;
     std::vector<std::array<int, 8>> corners;  // (#D) its corners
-    std::vector<double>
-        fill;  // (#D) what fills it, over s³, > 0; above 1 with slivers (slivers.h)
+    // (#D) what fills it, over s³, > 0; above 1 with slivers (slivers.h).
+    std::vector<double> fill;
     std::vector<Vec3> filled_centre;     // (#D) centroid of the filled part [m]
     std::vector<double> centre_outside;  // (#D) its signed distance from the body's surface [m]
     std::vector<int> region;             // (#D) region with the largest share
-    std::vector<double> mu,
-        lambda;  // (#D) Lamé parameters of the filled part [Pa], share-weighted
+    // (#D) Lamé parameters of the filled part [Pa], share-weighted.
+    std::vector<double> mu, lambda;
     std::vector<double> density;  // (#D) of the filled part [kg/m³], share-weighted
     std::vector<std::array<int, 3>> corner_cell;  // (#C) integer coordinates
     std::vector<Vec3> corner_rest;                // (#C) [m]

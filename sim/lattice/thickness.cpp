@@ -26,8 +26,8 @@ bool Thickness::is_thin_at(const Vec3& X, double distance) {
         const Vec3 step = h * Vec3::Unit(axis);
         uphill[axis] = solid_.signed_distance(X + step) - solid_.signed_distance(X - step);
     }
-    const double slightly_more =
-        1.02;  // so that rounding does not decide where sizes are whole
+    // So that rounding does not decide where sizes are whole.
+    const double slightly_more = 1.02;
     if (uphill.norm() > 0
         && remember(X - (distance + slightly_more * depth_) * uphill.normalized()))
         return false;

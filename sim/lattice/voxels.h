@@ -37,8 +37,8 @@ struct FilledCube {
     std::array<int, 3> cell{0, 0, 0};
     double filled = 0;     // of samples_per_cube
     Vec3 moment{0, 0, 0};  // sum of their places in the cube, whose edge is samples_per_edge
-    std::vector<std::pair<int, double>>
-        samples;  // (region, samples of it), regions ascending, none with 0
+    // (region, samples of it), regions ascending, none with 0.
+    std::vector<std::pair<int, double>> samples;
 
     /// Samples in the body along each face, 2 axis + (0 low, 1 high): bit u + 8 v with u, v along the next two axes.
     /// Those of cubes sampled finely are in `shape`.

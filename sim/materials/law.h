@@ -22,7 +22,8 @@ template <class Visitor>
         case Model::StableNeoHookean:
             return visitor(StableNeoHookean{});
         case Model::FixedCorotated:
-        case Model::Snow:  // between two steps; what a step leaves behind is not the law's business
+        case Model::Snow:
+            // Between two steps; what a step leaves behind is not the law's business.
             return visitor(FixedCorotated{});
     }
     throw std::logic_error("sim::visit: the model is unknown");

@@ -8,7 +8,8 @@ namespace sim {
 struct LinearSummary {
     int iterations = 0;
     bool converged = false;
-    bool negative_curvature = false;  // a direction with p·A p <= 0 was met: A is not positive definite
+    // A direction with p·A p <= 0 was met: A is not positive definite.
+    bool negative_curvature = false;
 };
 
 /// Buffers of the iteration, kept by the caller between solves.

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int chunk = 8192;
 constexpr double armijo = 1e-4;  // share of the predicted decrease that a step must bring
-constexpr double single_step =
-    0.5;  // of the gradient, that a step without a line search may leave
+// Of the gradient, that a step without a line search may leave.
+constexpr double single_step = 0.5;
 constexpr double value_rounding = 1e-13;  // of W, relative
 constexpr int max_halvings = 30;
 

@@ -9,15 +9,24 @@
 namespace sim {
 
 struct NewtonOptions {
-    double tolerance = 1e-4;         // stop when |gradient| <= max(tolerance * gradient_scale(), gradient_noise())
-    int max_iterations = 50;         // >= 1
-    double first_forcing = 0;        // relative tolerance of the first linear solve; 0: what the goal asks for
+    // Stop when |gradient| <= max(tolerance * gradient_scale(), gradient_noise()).
+    double tolerance = 1e-4;
+    int max_iterations = 50;  // >= 1
+    // Relative tolerance of the first linear solve; 0: what the goal asks for.
+    double first_forcing = 0;
     int max_linear_iterations = 20000;
-    bool line_search = true;         // false: one full step, converged if it halves the gradient
+    bool line_search = true;  // false: one full step, converged if it halves the gradient
     std::function<void()> before_iteration;  // where not empty; what it throws ends the call
 };
 
-enum class Termination { Converged, IterationLimit, LineSearchFailed, LinearSolveFailed, NotFinite, Unstable };
+enum class Termination {
+    Converged,
+    IterationLimit,
+    LineSearchFailed,
+    LinearSolveFailed,
+    NotFinite,
+    Unstable
+};
 
 struct NewtonSummary {
     Termination termination = Termination::NotFinite;
@@ -38,6 +47,9 @@ struct NewtonScratch {
 /// for the rest of the call where conjugate gradients meet negative curvature or the line search finds no descent.
 /// The linear solves are inexact: no more accurate than the goal asks for, after the first no more than to a tenth.
 /// On return q holds the best iterate; the caller decides what a failure means.
-NewtonSummary minimize(Potential& potential, const NewtonOptions& options, Field& q, NewtonScratch& scratch);
+NewtonSummary minimize(Potential& potential,
+                       const NewtonOptions& options,
+                       Field& q,
+                       NewtonScratch& scratch);
 
 }  // namespace sim

@@ -7,8 +7,8 @@ namespace tests {
 
 struct BarOptions {
     std::array<int, 3> n_domains{19, 7, 7};
-    double domain_size = 0.025;            // [m]
-    std::array<int, 2> segment_ends{6, 13};  // in domains along x
+    double domain_size = 0.025;                      // [m]
+    std::array<int, 2> segment_ends{6, 13};          // in domains along x
     double end_modulus = 1e6, middle_modulus = 1e5;  // [Pa]
     sim::Model model = sim::Model::NeoHookean;
     sim::SolverOptions solver;

@@ -103,8 +103,8 @@ TEST_CASE("C1 sudden gravity: the first peak is within 1% in height and time", "
         GENERATE(sim::Steps::Implicit, sim::Steps::Bdf2, sim::Steps::Explicit);
     options.solver.dt = 1e-3;
     if (options.solver.steps == sim::Steps::Implicit)
-        options.solver.dt =
-            0.25e-3;  // backward Euler at 1 ms damps the peak of S by another 1%
+        // Backward Euler at 1 ms damps the peak of S by another 1%.
+        options.solver.dt = 0.25e-3;
     const Peak peak = first_peak(options, 0.3);
     CAPTURE(options.solver.steps, peak.height, peak.time);
     CHECK(peak.height == Approx(layers == Layers::S ? -160.8e-3 : -59.8e-3).epsilon(0.01));

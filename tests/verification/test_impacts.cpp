@@ -9,8 +9,8 @@
 namespace {
 
 constexpr double frame_time = 1.0 / 24;
-constexpr double side = 0.3, edge = 0.05,
-                 soft = 1e5;  // of the cubes [m], [m], [Pa]: waves run at 10 m/s
+// Of the cubes [m], [m], [Pa]: waves run at 10 m/s.
+constexpr double side = 0.3, edge = 0.05, soft = 1e5;
 
 /// Two cubes 2 cm apart that meet along x at `speed`, one `shift` aside in y and z.
 sim::Scene two_cubes(double speed, double shift) {
@@ -30,11 +30,12 @@ sim::Scene two_cubes(double speed, double shift) {
 struct Course {
     double deepest = 0;  // penetration [domain edges]
     double lowest = 0;   // energy kept, of that at the start
-    double worst_rise =
-        0;  // of the energy over what it was in any frame before, of that at the start
+    // Of the energy over what it was in any frame before, of that at the start.
+    double worst_rise = 0;
     double highest = 0;                            // energy, of that at the start
     double momentum_error = 0, angular_error = 0;  // of m speed/2, of that times the side
-    int n_changes = 0;  // times at which other domains of the first body were enriched than before
+    // Times at which other domains of the first body were enriched than before.
+    int n_changes = 0;
 };
 
 Course run(const sim::Scene& scene, double speed, double duration, int n_frames) {

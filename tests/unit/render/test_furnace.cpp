@@ -40,8 +40,8 @@ TraceOptions small(int samples) {
 TEST_CASE("a matt sphere under a uniform sky shows its albedo") {
     Scene scene = furnace();
     scene.meshes.push_back(sphere(Vec3f::Zero(), 1, {0.25f, 0.5f, 0.75f}, matt()));
-    const Image image =
-        trace(scene, looking_down_z(0.15f, 4), small(4));  // the picture lies inside the sphere
+    // The picture lies inside the sphere.
+    const Image image = trace(scene, looking_down_z(0.15f, 4), small(4));
     for (const Vec3f& pixel : image.pixels)
         CHECK((pixel - Vec3f(0.25f, 0.5f, 0.75f)).norm() < 1e-5f);
 }
@@ -105,8 +105,8 @@ TEST_CASE("the inside of a clear body follows Beer's law") {
     clear.opacity = 0;
     clear.absorption = {0.5f, 1.0f, 2.0f};
     scene.meshes.push_back(sphere(Vec3f::Zero(), 1, Vec3f::Ones(), clear));
-    const Image image =
-        trace(scene, looking_down_z(1e-3f, 4), small(1));  // along the diameter of 2 m
+    // Along the diameter of 2 m.
+    const Image image = trace(scene, looking_down_z(1e-3f, 4), small(1));
     const Vec3f& pixel = image.pixels[0];
     CHECK(pixel.x() == Approx(std::exp(-1.0)).epsilon(5e-3));
     CHECK(pixel.y() == Approx(std::exp(-2.0)).epsilon(5e-3));

@@ -55,8 +55,8 @@ TEST_CASE(
     tests::Random random(3);
     for (int repeat = 0; repeat < 50; ++repeat) {
         const Vec3 n = tests::random_vector(random).normalized();
-        const double most =
-            2 / 0.3 * voxel * voxel / 8;  // both principal curvatures, at radius 0.3 and more
+        // Both principal curvatures, at radius 0.3 and more.
+        const double most = 2 / 0.3 * voxel * voxel / 8;
         CHECK(std::abs(sphere.at(ball.center + 0.35 * n, gradient) + 0.05) < most);
         CHECK((gradient - n).norm() < 0.02);
     }

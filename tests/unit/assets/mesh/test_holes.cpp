@@ -44,8 +44,8 @@ TEST_CASE("Holes are closed, facing as their neighbours do") {
 }
 
 TEST_CASE("A corner taken off leaves an uneven hole, closed by a fan about its middle") {
-    const TriangleMesh open =
-        box_without({5, 3});  // two neighbouring faces: a bent hole of six edges
+    // Two neighbouring faces: a bent hole of six edges.
+    const TriangleMesh open = box_without({5, 3});
     const std::vector<Hole> holes = find_holes(open);
     REQUIRE(holes.size() == 1);
     CHECK(holes[0].edges.size() == 6);

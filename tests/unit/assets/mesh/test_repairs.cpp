@@ -77,8 +77,8 @@ TEST_CASE("A sheet keeps the side that the file gives it, by the larger area") {
     const std::string positions = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 3 0 0\nv 3 1 0\n";
     const ImportedMesh down = import_obj(positions + "f 4 3 2 1\n");
     CHECK(vertex_normals(down.mesh)[0].z() == -1);
-    const ImportedMesh mixed =
-        import_obj(positions + "f 4 3 2 1\nf 2 5 6 3\n");  // 1 m² down, 2 m² up
+    // 1 m² down, 2 m² up.
+    const ImportedMesh mixed = import_obj(positions + "f 4 3 2 1\nf 2 5 6 3\n");
     CHECK(vertex_normals(mixed.mesh)[0].z() == 1);
     CHECK(tells(mixed.repairs, "2 triangles were turned"));
 }

@@ -147,8 +147,8 @@ TEST_CASE("the energy of contact is k/2 d² of every vertex inside, k = 40 E A /
 
 TEST_CASE("forces of contact are the slope of its energy, and its Hessian their change") {
     Blocks blocks({false, 0.4});
-    const Field x =
-        press_and_slide(blocks, 3e-6);  // slips grow to 3 mm/s: above the spring's end
+    // Slips grow to 3 mm/s: above the spring's end.
+    const Field x = press_and_slide(blocks, 3e-6);
     blocks.contact.linearize(x);
     blocks.contact.linearize(x);  // friction's Hessian is its own when its direction is known
     REQUIRE(magnitude(blocks.gradient(x)) > 1);

@@ -74,8 +74,8 @@ TEST_CASE("the deformation gradient is the derivative of the carried position") 
     for (const Vec3& X : lattice.corner_rest)
         corners.push_back(X + 0.3 * Vec3::Random());
     const Vec3 X(0.2, 0.7, 0.4);
-    constexpr double h =
-        0.1;  // central differences are exact: the map is linear along each axis
+    // Central differences are exact: the map is linear along each axis.
+    constexpr double h = 0.1;
     const Mat3 F = deformation_gradient(lattice, bind_points(lattice, {X})[0], corners);
     for (int j = 0; j < 3; ++j) {
         const auto ends = bind_points(lattice, {X - h * Vec3::Unit(j), X + h * Vec3::Unit(j)});

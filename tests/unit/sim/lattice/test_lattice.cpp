@@ -135,8 +135,8 @@ TEST_CASE("a bar of three segments has the paper's 196 domains at its interfaces
 }
 
 TEST_CASE("a cube of five layers has the paper's 3872 domains at its interfaces") {
-    const double s =
-        1.0 / 22;  // not a round number: region faces fall on domain faces up to rounding only
+    // Not a round number: region faces fall on domain faces up to rounding only.
+    const double s = 1.0 / 22;
     Body cube = body(assets::Box{{0, 0, 0}, {1, 1, 1}}, s);
     cube.regions.push_back(region("soft 1", between(4 * s, 8 * s), 1e5));
     cube.regions.push_back(region("soft 2", between(14 * s, 18 * s), 1e5));

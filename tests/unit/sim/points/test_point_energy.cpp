@@ -117,8 +117,8 @@ TEST_CASE("the energy of points is that of their deformation gradients") {
 TEST_CASE("snow yields at the end of each drift, and what has yielded moves on from there") {
     // The way is that since the start of the step, so a drift leads on from the one before.
     Sample sample(Kernel::Quadratic, sim::Model::StableNeoHookean, sim::Model::Snow);
-    sim::PointState expected =
-        sample.state;  // F where the step would have begun for what is left
+    // F where the step would have begun for what is left.
+    sim::PointState expected = sample.state;
     const Field first = sample.motion(3e-3, 2),
                 both = tests::sum(first, 1, sample.motion(3e-3, 3));
     std::vector<sim::Matrix3<double>> F(sample.points.size());

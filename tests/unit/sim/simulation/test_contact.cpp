@@ -43,8 +43,8 @@ TEST_CASE("a block on a slope of 30 degrees slides (g sin - mu g cos) t²/2, or 
                                             sim::Friction{true, 0});
     sim::Scene scene;
     scene.solver.method = sim::Method::Fem;
-    scene.solver.dt =
-        0.5e-3;  // friction follows the normal force of the step before: first order in dt
+    // Friction follows the normal force of the step before: first order in dt.
+    scene.solver.dt = 0.5e-3;
     scene.bodies.push_back(cube("block", {0, 0, 0}, 0.2, 2, 1e7));
     scene.forces.push_back(sim::Gravity{{g * std::sin(angle), 0, -g * std::cos(angle)}});
     scene.colliders.push_back({sim::PlaneShape{{0, 0, 0}, {0, 0, 1}}, friction});
