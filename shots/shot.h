@@ -14,7 +14,6 @@
 namespace shots {
 
 struct Shot {
-    int format = 1;
     std::string name;
     FrameRange frames;  // simulated from first to last; every step-th one is rendered
     // Simulated time per frame is 1/fps; the first frame is the state at time 0.

@@ -9,13 +9,13 @@ namespace shots {
 namespace {
 
 /// Counts up whenever the same shot file would give other frames for a reason that its words do not show.
-constexpr int simulation_schema = 2;
+constexpr int simulation_schema = 3;
 
 void read_words(const Table& words, Reading& reading, Shot& shot) {
     TableReader picture(words, {1, 1, {}}, "", Decides::Picture, reading);
     TableReader root(words, {1, 1, {}}, "", Decides::Simulation, reading);
 
-    shot.format = root.whole("format", 1, 1);
+    root.whole("format", 1, 1);  // the only one so far
     shot.name = picture.identifier("shot");
     shot.frames = read_frames(root);
     shot.fps = root.number("fps", Dimension::Rate, {.most = 1e6, .above = 0}, shot.fps);

@@ -15,12 +15,6 @@ namespace {
 // k / (E s): depth below 1e-3 s under 10% of E as pressure.
 constexpr double contact_stiffness = 100;
 
-/// Young's modulus of a domain's mixture.   [Pa]
-double young_modulus(const Lattice& lattice, int p) {
-    const double mu = lattice.mu[p], lambda = lattice.lambda[p];
-    return mu * (3 * lambda + 2 * mu) / (lambda + mu);
-}
-
 Vec3 centre_of_mass(const std::vector<double>& masses, const std::vector<Vec3>& places) {
     Vec3 sum = Vec3::Zero();
     double mass = 0;
@@ -188,7 +182,7 @@ std::vector<ContactCorner> Assembly::contact_corners() const {
                 result.push_back({body.begin + p,
                                   index,
                                   outside[body.begin + p],
-                                  contact_stiffness * young_modulus(lattice, p) * lattice.edge,
+                                  contact_stiffness * lattice.young_modulus(p) * lattice.edge,
                                   points->mass[p],
                                   lattice.edge});
             continue;
@@ -200,7 +194,7 @@ std::vector<ContactCorner> Assembly::contact_corners() const {
             for (int a = 0; a < 8; ++a) {
                 const int c = lattice.corners[p][a];
                 directions[c] |= 1u << a;
-                modulus[c] = std::max(modulus[c], young_modulus(lattice, p));
+                modulus[c] = std::max(modulus[c], lattice.young_modulus(p));
             }
         for (int c = 0; c < lattice.n_corners(); ++c)
             if (directions[c] != 0xff)

@@ -9,52 +9,60 @@ namespace sim {
 
 namespace {
 
+/// What a probe tells of a region, piece by piece; nothing where a region is thinner than a domain everywhere.
+class RegionRow {
+  public:
+    void add(double rest_volume, double volume, const Mat3& F, const Vec3& at) {
+        rest_volume_ += rest_volume;
+        row_.volume += volume;
+        row_.position += rest_volume * at;
+        row_.stretch += rest_volume * Eigen::JacobiSVD<Mat3>(F).singularValues()[0];
+    }
+
+    ProbeRow row() const {
+        ProbeRow row = row_;
+        row.is_region = true;
+        if (rest_volume_ > 0) {
+            row.position /= rest_volume_;
+            row.stretch /= rest_volume_;
+        }
+        return row;
+    }
+
+  private:
+    ProbeRow row_;
+    double rest_volume_ = 0;
+};
+
 ProbeRow region_row(const AssembledBody& body, int region, const std::vector<Vec3>& corners) {
-    ProbeRow row;
-    row.is_region = true;
-    double rest_volume = 0;
+    RegionRow sums;
     for (int p = 0; p < body.lattice.n_domains(); ++p) {
         if (body.lattice.region[p] != region)
             continue;
-        const Mat3 F = deformation_gradient(body.lattice, p, corners);
-        const double volume = body.lattice.domain_volume(p);
         Vec3 centre = Vec3::Zero();
         for (const int c : body.lattice.corners[p])
             centre += corners[c] / 8;
-        row.position += volume * centre;
-        row.stretch += volume * Eigen::JacobiSVD<Mat3>(F).singularValues()[0];
-        row.volume += volume * F.determinant();
-        rest_volume += volume;
+        const Mat3 F = deformation_gradient(body.lattice, p, corners);
+        const double volume = body.lattice.domain_volume(p);
+        sums.add(volume, volume * F.determinant(), F, centre);
     }
-    if (rest_volume > 0) {  // a region may be thinner than a domain everywhere
-        row.position /= rest_volume;
-        row.stretch /= rest_volume;
-    }
-    return row;
+    return sums.row();
 }
 
 ProbeRow region_row(const AssembledBody& body,
                     int region,
                     const PointState& state,
                     const Vec3p* x) {
-    ProbeRow row;
-    row.is_region = true;
-    double rest_volume = 0;
+    RegionRow sums;
     const MaterialPoints& points = *body.points;
     for (int p = 0; p < points.size(); ++p) {
         if (points.region[p] != region)
             continue;
         const Eigen::Map<const Mat3> F(state.F[p].m);
-        row.position += points.volume[p] * unpadded(x[p]);
-        row.stretch += points.volume[p] * Eigen::JacobiSVD<Mat3>(F).singularValues()[0];
-        row.volume += points.volume[p] * F.determinant() * state.J_plastic[p];
-        rest_volume += points.volume[p];
+        const double volume = points.volume[p];
+        sums.add(volume, volume * F.determinant() * state.J_plastic[p], F, unpadded(x[p]));
     }
-    if (rest_volume > 0) {
-        row.position /= rest_volume;
-        row.stretch /= rest_volume;
-    }
-    return row;
+    return sums.row();
 }
 
 /// The point about which the moment of a pin is taken.

@@ -256,10 +256,6 @@ Vec3 apply(const Transform& transform, const Vec3& x) {
     return transform.translate + rotation(transform) * (transform.scale * x);
 }
 
-Vec3 apply_inverse(const Transform& transform, const Vec3& x) {
-    return rotation(transform).transpose() * (x - transform.translate) / transform.scale;
-}
-
 double distance_up_to(const Shape& shape, const Vec3& x, double enough) {
     return std::visit(
         [&](const auto& s) {

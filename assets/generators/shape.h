@@ -94,7 +94,6 @@ struct Source {
 };
 
 Vec3 apply(const Transform& transform, const Vec3& x);
-Vec3 apply_inverse(const Transform& transform, const Vec3& x);
 
 /// Rz Ry Rx of the angles about the fixed axes, and R of a transform.   (3×3)
 Mat3 rotation(const Vec3& angles);

@@ -96,13 +96,12 @@ ContactSurface::ContactSurface(const Body& body,
     const std::vector<Binding> bindings = bind_points(*lattice, points);
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const int p = bindings[i].domain;
-        const double mu = lattice->mu[p], lambda = lattice->lambda[p];
         ContactVertex vertex;
         vertex.rest = points[i];
         vertex.domain = p;
         vertex.weights = bindings[i].weights;
         vertex.area = samples[i].area;
-        vertex.young_modulus = mu * (3 * lambda + 2 * mu) / (lambda + mu);
+        vertex.young_modulus = lattice->young_modulus(p);
         vertex.wave_speed = std::sqrt(vertex.young_modulus / lattice->density[p]);
         for (int a = 0; a < 8; ++a)
             vertex.corners[a] = begin + lattice->corners[p][a];

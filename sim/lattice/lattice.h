@@ -49,6 +49,11 @@ struct Lattice {
     int n_corners() const { return static_cast<int>(corner_rest.size()); }
 
     double domain_volume(int p) const { return fill[p] * edge * edge * edge; }
+
+    /// Of a domain's mixture.   [Pa]
+    double young_modulus(int p) const {
+        return mu[p] * (3 * lambda[p] + 2 * mu[p]) / (lambda[p] + mu[p]);
+    }
 };
 
 /// What becomes of cubes that a body hardly touches (slivers.h). Points have no corners that could be loose.

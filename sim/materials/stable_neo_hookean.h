@@ -17,15 +17,7 @@ struct StableNeoHookean {
         return energy_density(F, determinant(F) - 1.0, mu, lambda);
     }
 
-    /// P = ∂Ψ/∂F = μF + h'(J) ∂J/∂F,  h' = (λ + μ)(J − 1) − μ.   [Pa]
-    template <class S>
-    [[gnu::always_inline]] static Matrix3<S> first_piola(const Matrix3<S>& F, S mu, S lambda) {
-        Matrix3<S> P;
-        energy_and_first_piola(F, mu, lambda, P);
-        return P;
-    }
-
-    /// Ψ [J/m³] and P [Pa] for the work of one.
+    /// Ψ [J/m³] and, for the work of one, P = ∂Ψ/∂F = μF + h'(J) ∂J/∂F,  h' = (λ + μ)(J − 1) − μ [Pa].
     template <class S>
     [[gnu::always_inline]] static S energy_and_first_piola(const Matrix3<S>& F,
                                                            S mu,

@@ -72,8 +72,11 @@ inline double energy_density(sim::Model model, const Mat3& F) {
 }
 
 inline Mat3 first_piola(sim::Model model, const Mat3& F) {
-    return dense(
-        sim::visit(model, [&](auto law) { return law.first_piola(plain(F), mu, lambda); }));
+    return dense(sim::visit(model, [&](auto law) {
+        sim::Matrix3<double> P;
+        law.energy_and_first_piola(plain(F), mu, lambda, P);
+        return P;
+    }));
 }
 
 inline Mat9 stiffness(sim::Model model, const Mat3& F) {
