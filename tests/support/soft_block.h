@@ -30,6 +30,11 @@ inline sim::Body soft_block(
     return soft_body(name, assets::Box{low, low + size}, edge, E);
 }
 
+inline sim::Body soft_cube(
+    const char* name, const Vec3& low, double side, int n_domains, double E) {
+    return soft_block(name, low, Vec3::Constant(side), side / n_domains, E);
+}
+
 /// Holds what of a body stands on z = 0.
 inline sim::Pin foot_of(const char* body) {
     sim::Pin foot;

@@ -1,6 +1,6 @@
 // Bodies against colliders that are thin, fast, moving, or meshes.
-#include "sim/simulation.h"
 #include "tests/support/box_file.h"
+#include "tests/support/soft_block.h"
 
 #include <catch2/catch.hpp>
 
@@ -13,22 +13,8 @@ namespace {
 
 constexpr double frame_time = 1.0 / 24;
 
-sim::Body cube(const Vec3& centre, double edge, int n_domains, double young_modulus) {
-    sim::Body body;
-    body.name = "cube";
-    body.domain_size = edge / n_domains;
-    const Vec3 half = Vec3::Constant(edge / 2);
-    body.source.geometry = assets::Shape{assets::Box{centre - half, centre + half}};
-    body.skins.push_back({"outside", {}});
-    sim::Region region;
-    region.name = "all";
-    region.select.is = sim::Selector::All{};
-    region.model = sim::Model::StableNeoHookean;
-    region.young_modulus = young_modulus;
-    region.poisson_ratio = 0.3;
-    region.density = 1000;
-    body.regions.push_back(region);
-    return body;
+sim::Body cube(const Vec3& centre, double side, int n_domains, double E) {
+    return tests::soft_cube("cube", centre - Vec3::Constant(side / 2), side, n_domains, E);
 }
 
 sim::Scene scene_of(sim::Body body, double dt) {
@@ -38,10 +24,6 @@ sim::Scene scene_of(sim::Body body, double dt) {
     scene.probes.push_back({"all", "cube", std::string("all")});
     scene.bodies.push_back(std::move(body));
     return scene;
-}
-
-double energy(const sim::Stats& stats) {
-    return stats.kinetic_energy + stats.elastic_energy + stats.gravitational_energy;
 }
 
 /// A sphere as a mesh file in a temporary folder: n facets from pole to pole, 2 n around.
@@ -114,16 +96,16 @@ TEST_CASE("a cube at 20 m/s does not pass through a thin wall, and gains no ener
         collider.shape = assets::MeshFile{tests::box_file(low, high)};
     scene.colliders.push_back(collider);
     sim::Simulation simulation(scene, frame_time);
-    double highest = energy(simulation.stats());
+    double highest = tests::energy(simulation.stats());
     for (int k = 1; k <= 40; ++k) {
         simulation.advance_to(1e-3 * k);
         const std::vector<assets::SurfaceFrame> surfaces = simulation.deformed_surfaces();
         for (const Vec3f& x : surfaces.front().positions)  // the cube's
             REQUIRE(x.z() > -thickness / 2);
-        CHECK(energy(simulation.stats()) < highest * (1 + 1e-3));
+        CHECK(tests::energy(simulation.stats()) < highest * (1 + 1e-3));
         if (thrown.wall
             != Wall::Mesh)  // which yields by a part of its thickness, and gives that back
-            highest = std::min(highest, energy(simulation.stats()));
+            highest = std::min(highest, tests::energy(simulation.stats()));
     }
     CHECK(simulation.stats().linear_momentum.z() > 0);  // it bounces
     for (const assets::SurfaceFrame& surface : simulation.deformed_surfaces())
@@ -141,12 +123,12 @@ TEST_CASE("points at 20 m/s do not pass through a thin wall") {
     scene.colliders.push_back(
         {assets::Shape{assets::Box{{-0.3, -0.3, -thickness}, {0.3, 0.3, 0}}}, {false, 0.3}});
     sim::Simulation simulation(scene, frame_time);
-    const double highest = energy(simulation.stats());
+    const double highest = tests::energy(simulation.stats());
     for (int k = 1; k <= 20; ++k) {
         simulation.advance_to(2e-3 * k);
         for (const Vec3& x : simulation.point_clouds().front().positions)
             REQUIRE(x.z() > -thickness / 2);
-        CHECK(energy(simulation.stats()) < highest * (1 + 1e-3));
+        CHECK(tests::energy(simulation.stats()) < highest * (1 + 1e-3));
     }
 }
 

@@ -1,6 +1,7 @@
 // What a free body keeps: mass, momentum, energy, and how much spin each method loses.
 #include "sim/simulation.h"
 #include "tests/support/bar_scene.h"
+#include "tests/support/soft_block.h"
 
 #include <catch2/catch.hpp>
 
@@ -66,10 +67,6 @@ sim::Scene disc(sim::Method method,
     return scene;
 }
 
-double total_energy(const sim::Stats& stats) {
-    return stats.kinetic_energy + stats.elastic_energy + stats.gravitational_energy;
-}
-
 }  // namespace
 
 TEST_CASE("free flight keeps mass and momentum, and creates no elastic energy",
@@ -109,7 +106,7 @@ TEST_CASE("a spinning disc keeps its momentum, gains no energy, and loses little
         const sim::Stats now = simulation.stats();
         CHECK((now.linear_momentum - start.linear_momentum).norm()
               < 1e-12 * start.linear_momentum.norm());
-        CHECK(total_energy(now) <= total_energy(start) * (1 + 1e-9));
+        CHECK(tests::energy(now) <= tests::energy(start) * (1 + 1e-9));
         const double kept = now.angular_momentum.z() / start.angular_momentum.z();
         WARN(name << ", " << scheme.name << " keeps " << kept
                   << " of its angular momentum in a revolution of 1000 steps");
@@ -133,7 +130,7 @@ TEST_CASE("affine transfers keep the spin of a disc whose corners are freed and 
     simulation.advance_to(1);
     const sim::Stats now = simulation.stats();
     CHECK(std::abs(now.angular_momentum.z() / start.angular_momentum.z() - 1) < 0.01);
-    CHECK(total_energy(now) < total_energy(start));
+    CHECK(tests::energy(now) < tests::energy(start));
 }
 
 TEST_CASE("a bar that spins in the air keeps its angular momentum, and never gains energy",
@@ -161,14 +158,14 @@ TEST_CASE("a bar that spins in the air keeps its angular momentum, and never gai
         scene.bodies[0].spin = {3, 8, 20};
         sim::Simulation simulation(scene, frame_time);
         const sim::Stats start = simulation.stats();
-        double before = total_energy(start);
+        double before = tests::energy(start);
         for (int k = 1; k <= 10; ++k) {
             simulation.advance_to(period * k);
-            const double now = total_energy(simulation.stats());
+            const double now = tests::energy(simulation.stats());
             // BDF2 is of second order in how the swings carry it, too.
-            CHECK(now < before + (is_bdf2 ? 2e-4 : 1e-4) * total_energy(start));
+            CHECK(now < before + (is_bdf2 ? 2e-4 : 1e-4) * tests::energy(start));
             if (!is_bdf2 && !is_at_rest)
-                CHECK(now > total_energy(start) * (1 - 1e-3));
+                CHECK(now > tests::energy(start) * (1 - 1e-3));
             before = now;
         }
         const Vec3 lost = simulation.stats().angular_momentum - start.angular_momentum;
@@ -203,14 +200,14 @@ TEST_CASE("the total energy of a swinging bar never rises", "[conservation]") {
         options.solver.steps = scheme.steps;
         options.solver.dt = dt;
         sim::Simulation simulation(tests::bar_scene(options), frame_time);
-        const double start = total_energy(simulation.stats());
+        const double start = tests::energy(simulation.stats());
         const double scale = 8;  // energy that swings between gravity, motion and strain [J]
         for (int k = 1; k <= 50; ++k) {
             simulation.advance_to(0.02 * k);
-            CHECK(total_energy(simulation.stats()) < start + 1e-3 * scale);
+            CHECK(tests::energy(simulation.stats()) < start + 1e-3 * scale);
         }
         if (scheme.steps == sim::Steps::Implicit)
-            CHECK(total_energy(simulation.stats()) < -0.05);
+            CHECK(tests::energy(simulation.stats()) < -0.05);
     }
 }
 
@@ -228,12 +225,12 @@ struct Oscillations {
         sim::Simulation simulation(tests::bar_scene(options), frame_time);
         double begin = 0;
         for (double* change : {&first, &next}) {
-            const double start = total_energy(simulation.stats());
+            const double start = tests::energy(simulation.stats());
             double swing = 0;
             for (int k = 1; k <= 40; ++k) {
                 simulation.advance_to(begin + period * k / 4);
                 swing = std::max(swing, simulation.stats().kinetic_energy);
-                const double now = total_energy(simulation.stats()) - start;
+                const double now = tests::energy(simulation.stats()) - start;
                 *change = std::abs(now) > std::abs(*change) ? now : *change;
             }
             *change /= swing;

@@ -1,7 +1,7 @@
 // Traditional MPM: what points keep, how they resist, when they break.
 #include "sim/lattice/lattice.h"
-#include "sim/simulation.h"
 #include "tests/support/box_body.h"
+#include "tests/support/soft_block.h"
 
 #include <catch2/catch.hpp>
 
@@ -197,10 +197,7 @@ double energy_left(double dt, double pic_rate) {
         {"wall", body.name, tests::behind({0, 0, 0}, {1, 0, 0}), sim::Pin::Velocity{flight}}};
     scene.forces = {sim::Gravity{{0, 0, -10}}};
     sim::Simulation simulation(scene, 1.0 / 24);
-    const auto total = [&] {
-        const sim::Stats stats = simulation.stats();
-        return stats.kinetic_energy + stats.elastic_energy + stats.gravitational_energy;
-    };
+    const auto total = [&] { return tests::energy(simulation.stats()); };
     const double before = total();
     simulation.advance_to(0.1);
     return total() - before;
@@ -434,10 +431,7 @@ TEST_CASE("a stiff body that falls on snow by long steps gains no energy") {
     scene.forces = {sim::Gravity{{0, 0, -10}}};
     scene.colliders = {{sim::PlaneShape{{0, 0, 0}, {0, 0, 1}}, {true, 0}}};
     sim::Simulation simulation(scene, 1.0 / 24);
-    const auto energy = [&] {
-        const sim::Stats stats = simulation.stats();
-        return stats.kinetic_energy + stats.elastic_energy + stats.gravitational_energy;
-    };
+    const auto energy = [&] { return tests::energy(simulation.stats()); };
     const double start = energy();
     double highest = 0;
     for (int k = 1; k <= 30; ++k) {

@@ -2,6 +2,7 @@
 #include "sim/elasticity/eight_point.h"
 #include "sim/elasticity/elasticity.h"
 #include "tests/support/box_body.h"
+#include "tests/support/corner_fields.h"
 #include "tests/support/derivative_order.h"
 #include "tests/support/random_fields.h"
 #include "tests/support/threads.h"
@@ -33,18 +34,10 @@ struct Block {
         lattice.fill.back() = 0.3;
     }
 
-    Field rest() const {
-        Field x;
-        for (const Vec3& X : lattice.corner_rest)
-            x.push_back(sim::padded(X));
-        return x;
-    }
+    Field rest() const { return tests::corners_at(lattice); }
 
     Field moved(const Mat3& F, const Vec3& by) const {
-        Field x;
-        for (const Vec3& X : lattice.corner_rest)
-            x.push_back(sim::padded(F * X + by));
-        return x;
+        return tests::corners_at(lattice, F, by);
     }
 };
 
@@ -68,29 +61,17 @@ double energy_density(sim::Model model, const Mat3& F, double mu, double lambda)
     return mu * (stretches - Vec3::Ones()).squaredNorm() + lambda / 2 * (J - 1) * (J - 1);
 }
 
-Mat3 gradient_at(const sim::Lattice& lattice, int p, const Field& x, const Vec3& t) {
-    Mat3 F = Mat3::Zero();
-    for (int a = 0; a < 8; ++a)
-        for (int j = 0; j < 3; ++j) {
-            double slope = 1 / lattice.edge;
-            for (int k = 0; k < 3; ++k)
-                slope *= k == j ? ((a >> k & 1) ? 1 : -1) : ((a >> k & 1) ? t[k] : 1 - t[k]);
-            F.col(j) += slope * sim::unpadded(x[lattice.corners[p][a]]);
-        }
-    return F;
-}
-
 /// E = Σ_p V_p/8 Σ_g Ψ(F_g (J_c/J_g)^⅓), written out.
 double plain_energy(const Block& block, const Field& x) {
     const sim::Lattice& lattice = block.lattice;
     double energy = 0;
     for (int p = 0; p < lattice.n_domains(); ++p) {
-        const double J_c = gradient_at(lattice, p, x, Vec3::Constant(0.5)).determinant();
+        const double J_c = tests::gradient_at(lattice, p, x, Vec3::Constant(0.5)).determinant();
         for (int g = 0; g < 8; ++g) {
             Vec3 t;
             for (int k = 0; k < 3; ++k)
                 t[k] = 0.5 + ((g >> k & 1) ? 0.5 : -0.5) / std::sqrt(3.0);
-            const Mat3 F = gradient_at(lattice, p, x, t);
+            const Mat3 F = tests::gradient_at(lattice, p, x, t);
             energy += lattice.domain_volume(p) / 8
                       * energy_density(block.body.regions[0].model,
                                        std::cbrt(J_c / F.determinant()) * F,
@@ -236,7 +217,7 @@ TEST_CASE("eight points: a state inverted at one point is forbidden, and found")
     // One corner pushed in so far that only the points near it turn over.
     const int corner = block.lattice.corners[0][0];
     x[corner] += sim::padded(0.75 * s * Vec3(1, 1, 1));
-    CHECK(gradient_at(block.lattice, 0, x, Vec3::Constant(0.5)).determinant() > 0);
+    CHECK(tests::gradient_at(block.lattice, 0, x, Vec3::Constant(0.5)).determinant() > 0);
     CHECK(std::isinf(energy.energy_and_gradient(x.data(), gradient.data())));
     CHECK(energy.smallest_J(x.data()).domain == 0);
     CHECK(energy.smallest_J(x.data()).J < 0);
@@ -273,9 +254,7 @@ TEST_CASE("eight points: the same for any number of threads") {
     const sim::Body body = tests::box_body({20, 6, 6}, s);
     const sim::Lattice lattice = sim::make_lattice(body);
     tests::Random random(6);
-    Field rest;
-    for (const Vec3& X : lattice.corner_rest)
-        rest.push_back(sim::padded(X));
+    const Field rest = tests::corners_at(lattice);
     const Field u = tests::random_field(rest.size(), random, 0.1 * s),
                 x = tests::sum(rest, 1, u);
     const auto run = [&] {

@@ -1,4 +1,6 @@
 #include "sim/elasticity/elasticity.h"
+#include "tests/support/corner_fields.h"
+#include "tests/support/random_fields.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -6,10 +8,14 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <random>
+#include <limits>
 
 using sim::Field;
 using sim::Vec3p;
+using tests::corners_at;
+using tests::dot;
+using tests::gradient_at;
+using tests::sum;
 
 namespace {
 
@@ -46,46 +52,8 @@ Block block(const std::array<int, 3>& n) {
 }
 
 Field random_field(int n, double size, unsigned seed) {
-    std::mt19937 random(seed);
-    Field field(n);
-    for (Vec3p& v : field)
-        for (int k = 0; k < 3; ++k)
-            v[k] = size * (2.0 * random() / std::mt19937::max() - 1);
-    return field;
-}
-
-Field rest_field(const sim::Lattice& lattice) {
-    Field x;
-    for (const Vec3& X : lattice.corner_rest)
-        x.push_back(sim::padded(X));
-    return x;
-}
-
-Field sum(const Field& a, double factor, const Field& b) {
-    Field result = a;
-    for (std::size_t c = 0; c < a.size(); ++c)
-        result[c] += factor * b[c];
-    return result;
-}
-
-double inner(const Field& a, const Field& b) {
-    double result = 0;
-    for (std::size_t c = 0; c < a.size(); ++c)
-        result += sim::dot(a[c], b[c]);
-    return result;
-}
-
-/// F of a domain at local coordinates t in [0,1]³, written out from the trilinear shape functions.
-Mat3 gradient_at(const sim::Lattice& lattice, int p, const Field& x, const Vec3& t) {
-    Mat3 F = Mat3::Zero();
-    for (int a = 0; a < 8; ++a)
-        for (int j = 0; j < 3; ++j) {
-            double slope = 1 / lattice.edge;
-            for (int k = 0; k < 3; ++k)
-                slope *= k == j ? ((a >> k & 1) ? 1 : -1) : ((a >> k & 1) ? t[k] : 1 - t[k]);
-            F.col(j) += slope * sim::unpadded(x[lattice.corners[p][a]]);
-        }
-    return F;
+    tests::Random random(seed);
+    return tests::random_field(n, random, size);
 }
 
 /// The energy by the plain formulas: one point, and the hourglass sum over eight Gauss points.
@@ -130,7 +98,7 @@ TEST_CASE("the energy is the plain sum over domains, over several bricks and mix
         Block b = block(n);
         sim::Elasticity elasticity(b.lattice, b.body);
         const Field x =
-            sum(rest_field(b.lattice), 1, random_field(b.lattice.n_corners(), 0.01, 1));
+            sum(corners_at(b.lattice), 1, random_field(b.lattice.n_corners(), 0.01, 1));
         Field gradient(x.size());
         const double expected = plain_energy(b, x);
         REQUIRE(expected > 1);
@@ -146,15 +114,15 @@ TEST_CASE(
     Block b = block(GENERATE(std::array{5, 3, 2}, std::array{2, 9, 4}, std::array{2, 3, 9}));
     sim::Elasticity elasticity(b.lattice, b.body);
     const int n = b.lattice.n_corners();
-    const Field x = sum(rest_field(b.lattice), 1, random_field(n, 0.01, 2));
+    const Field x = sum(corners_at(b.lattice), 1, random_field(n, 0.01, 2));
     const Field u = random_field(n, 1, 3), w = random_field(n, 1, 4);
     Field gradient(n), product(n), product_w(n);
     elasticity.energy_and_gradient(x.data(), gradient.data());
     elasticity.linearize(x.data(), false);
     elasticity.product(u.data(), product.data());
     elasticity.product(w.data(), product_w.data());
-    REQUIRE(std::abs(inner(gradient, u)) > 1);
-    CHECK(inner(product, w) == Approx(inner(product_w, u)).epsilon(1e-12));
+    REQUIRE(std::abs(dot(gradient, u)) > 1);
+    CHECK(dot(product, w) == Approx(dot(product_w, u)).epsilon(1e-12));
 
     const auto errors = [&](double h) {
         Field g_plus(n), g_minus(n);
@@ -163,8 +131,8 @@ TEST_CASE(
             elasticity.energy_and_gradient(plus.data(), g_plus.data())
             - elasticity.energy_and_gradient(minus.data(), g_minus.data());
         return std::pair{
-            std::abs(difference / (2 * h) - inner(gradient, u)),
-            std::abs((inner(g_plus, w) - inner(g_minus, w)) / (2 * h) - inner(product, w))};
+            std::abs(difference / (2 * h) - dot(gradient, u)),
+            std::abs((dot(g_plus, w) - dot(g_minus, w)) / (2 * h) - dot(product, w))};
     };
     const auto [energy_coarse, gradient_coarse] = errors(2e-3);
     const auto [energy_fine, gradient_fine] = errors(1e-3);
@@ -201,7 +169,7 @@ TEST_CASE("rigid motion costs nothing, and inner forces have no resultant and no
 TEST_CASE("a domain bent along an axis stores the energy of a beam, E I curvature² s / 2") {
     Block b = block({1, 1, 1});
     const double curvature = 1e-4, s = b.lattice.edge, E = 1e5;
-    Field x = rest_field(b.lattice);
+    Field x = corners_at(b.lattice);
     for (Vec3p& v : x)
         v[0] += curvature * (v[0] - s / 2) * (v[2] - s / 2);
     sim::Elasticity elasticity(b.lattice, b.body);
@@ -214,7 +182,7 @@ TEST_CASE("a domain bent along an axis stores the energy of a beam, E I curvatur
 
 TEST_CASE("an inverted domain of the log law is forbidden, and found") {
     Block b = block({1, 1, 1});
-    Field x = rest_field(b.lattice);
+    Field x = corners_at(b.lattice);
     for (Vec3p& v : x)
         v[0] = -v[0];
     sim::Elasticity elasticity(b.lattice, b.body);
@@ -227,9 +195,7 @@ TEST_CASE("an inverted domain of the log law is forbidden, and found") {
 
 TEST_CASE("what is no number is the smallest J, whatever comes after it") {
     const Block b = block({12, 1, 1});
-    Field x;
-    for (const Vec3& X : b.lattice.corner_rest)
-        x.push_back(sim::padded(X));
+    Field x = corners_at(b.lattice);
     const int broken = 5;
     for (const int c : b.lattice.corners[broken])
         if (b.lattice.corner_rest[c].x() > 0.55)

@@ -1,5 +1,6 @@
 #include "sim/elasticity/highest_frequency.h"
 #include "tests/support/box_body.h"
+#include "tests/support/corner_fields.h"
 
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
@@ -20,13 +21,6 @@ sim::Body some_body() {
         tests::region("stiff", tests::behind(s * Vec3(2, 0, 0), Vec3(1, 0, 0)), 4e5));
     body.regions[1].density = 2000;
     return body;
-}
-
-Field deformed(const sim::Lattice& lattice, const Mat3& F) {
-    Field x;
-    for (const Vec3& X : lattice.corner_rest)
-        x.push_back(sim::padded(F * X));
-    return x;
 }
 
 /// The largest w of K u = w² M u, K at x, from all of it, a column a product.
@@ -55,8 +49,8 @@ TEST_CASE("the highest frequency is that of the largest eigenvalue") {
     const sim::Body body = some_body();
     const sim::Lattice lattice = sim::make_lattice(body);
     const auto energy = sim::make_elastic_energy(lattice, body, quadrature);
-    const double expected =
-                     by_eigenvalues(*energy, lattice, deformed(lattice, Mat3::Identity())),
+    const double expected = by_eigenvalues(
+                     *energy, lattice, tests::corners_at(lattice, Mat3::Identity())),
                  found = sim::highest_frequency(*energy, lattice);
     CHECK(found <= (1 + 1e-12) * expected);
     CHECK(found >= 0.98 * expected);
@@ -75,8 +69,8 @@ TEST_CASE("a body that is pressed or pulled gets no faster than it stiffens") {
         region.model = model;
     const sim::Lattice lattice = sim::make_lattice(body);
     const auto energy = sim::make_elastic_energy(lattice, body, quadrature);
-    const Field rest = deformed(lattice, Mat3::Identity()),
-                x = deformed(lattice, stretches.asDiagonal());
+    const Field rest = tests::corners_at(lattice, Mat3::Identity()),
+                x = tests::corners_at(lattice, stretches.asDiagonal());
     REQUIRE(energy->stiffening(rest.data()) == Approx(1).epsilon(1e-12));
     const double faster =
         by_eigenvalues(*energy, lattice, x) / by_eigenvalues(*energy, lattice, rest);

@@ -2,6 +2,7 @@
 #include "sim/enrichment/enrichment.h"
 #include "sim/enrichment/thin_domains.h"
 #include "tests/support/box_body.h"
+#include "tests/support/corner_fields.h"
 #include "tests/support/random_fields.h"
 
 #include <Eigen/Geometry>
@@ -29,13 +30,6 @@ constexpr sim::EnrichmentCriteria interface {
     true, false, false, false
 }, thin{false, true, false, false}, mixed_cell{false, false, true, false},
     strain{false, false, false, true};
-
-sim::Field rest(const sim::Lattice& lattice) {
-    sim::Field corners;
-    for (const Vec3& X : lattice.corner_rest)
-        corners.push_back(sim::padded(X));
-    return corners;
-}
 
 }  // namespace
 
@@ -65,7 +59,7 @@ TEST_CASE("domains with their centre in the cell of a boundary domain's centre a
     const Vec3 shift = GENERATE(Vec3(0, 0, 0), Vec3(-7.77, 0.031, 3.003));
     const sim::Lattice lattice = layered({9, 5, 4}, s, 0, {4});
     tests::Random random(1);
-    sim::Field corners = rest(lattice);
+    sim::Field corners = tests::corners_at(lattice);
     for (sim::Vec3p& x : corners)
         x += sim::padded(shift + tests::random_vector(random, 0.02));
 
@@ -98,7 +92,7 @@ TEST_CASE("domains with their centre in the cell of a boundary domain's centre a
 
 TEST_CASE("a body of one material is never enriched") {
     const sim::Lattice lattice = layered({3, 1, 1}, 0.1, 0, {});
-    const sim::Field corners = rest(lattice);
+    const sim::Field corners = tests::corners_at(lattice);
     std::vector<char> free(corners.size(), 0);
     sim::Enrichment enrichment(lattice, interface, 0.2);
     enrichment.update(lattice, corners.data(), free.data());
@@ -108,7 +102,7 @@ TEST_CASE("a body of one material is never enriched") {
 
 TEST_CASE("a layered body that has flown apart is an error") {
     const sim::Lattice lattice = layered({2, 1, 1}, 0.1, 0, {1});
-    sim::Field corners = rest(lattice);
+    sim::Field corners = tests::corners_at(lattice);
     corners[0] = sim::Vec3p{1e300, 0, 0, 0};
     std::vector<char> free(corners.size(), 0);
     sim::Enrichment enrichment(lattice, interface, 0.2);
@@ -130,7 +124,7 @@ TEST_CASE("mixed_cell enriches where a cell holds two regions that are no neighb
         lattice.region.erase(lattice.region.begin() + p);
     }
     REQUIRE(sim::boundary_domains(lattice).empty());
-    const sim::Field corners = rest(lattice);
+    const sim::Field corners = tests::corners_at(lattice);
     const auto n_enriched = [&](const sim::EnrichmentCriteria& criteria) {
         std::vector<char> free(corners.size(), 0);
         sim::Enrichment enrichment(lattice, criteria, 2.0);  // cells [0,2) and [2,4) along x
@@ -157,7 +151,7 @@ TEST_CASE("thin parts are those that no cube of three cells fits into") {
 
     sim::Enrichment enrichment(lattice, thin, 0.1 * depth / 1.5);
     std::vector<char> free(lattice.n_corners(), 0);
-    enrichment.update(lattice, rest(lattice).data(), free.data());
+    enrichment.update(lattice, tests::corners_at(lattice).data(), free.data());
     CHECK(enrichment.enriched() == is_thin);
     CHECK(free == std::vector<char>(lattice.n_corners(), expected));
 }
@@ -186,7 +180,7 @@ TEST_CASE("strain enriches squashed domains until they have recovered by a margi
     const sim::Lattice lattice = layered({1, 1, 1}, 1, 0, {});
     sim::Enrichment enrichment(lattice, strain, 2.0);
     const auto enriched_at = [&](const Vec3& stretch) {
-        sim::Field corners = rest(lattice);
+        sim::Field corners = tests::corners_at(lattice);
         const Mat3 R = Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
         for (sim::Vec3p& x : corners)
             x = sim::padded(R * stretch.cwiseProduct(sim::unpadded(x)));
@@ -210,7 +204,7 @@ TEST_CASE("a domain near the border of a marked cell does not flicker") {
     const sim::Lattice lattice = layered({4, 1, 1}, 1, 0, {1});
     sim::Enrichment enrichment(lattice, interface, 2.0);
     const auto enriched_at = [&](double shift) {
-        sim::Field corners = rest(lattice);
+        sim::Field corners = tests::corners_at(lattice);
         for (sim::Vec3p& x : corners)
             x[0] += shift;
         std::vector<char> free(corners.size(), 0);

@@ -1,6 +1,7 @@
 #include "sim/grid/corner_map.h"
 #include "sim/lattice/lattice.h"
 #include "tests/support/box_body.h"
+#include "tests/support/corner_fields.h"
 #include "tests/support/random_fields.h"
 
 #include <catch2/catch.hpp>
@@ -17,13 +18,6 @@ using sim::Vec3p;
 namespace {
 
 constexpr double s = 0.1;
-
-Field rest(const sim::Lattice& lattice, const Vec3& shift) {
-    Field x;
-    for (const Vec3& corner : lattice.corner_rest)
-        x.push_back(sim::padded(corner + shift));
-    return x;
-}
 
 CornerMap map_of(
     const sim::Lattice& lattice, const Field& x, double h, Kernel kernel, bool cuts) {
@@ -66,7 +60,7 @@ TEST_CASE("where domains connect all, nodes are those of a grid that is not cut"
         GENERATE(Vec3(0, 0, 0), Vec3(1e-17, -1e-16, 1e-16), Vec3(-7.77, 0.031, 3.003));
     const double noise = GENERATE(0.0, 0.03);
     tests::Random random(3);
-    Field x = rest(lattice, shift);
+    Field x = tests::corners_at(lattice, Mat3::Identity(), shift);
     for (Vec3p& corner : x)
         corner += sim::padded(tests::random_vector(random, noise));
     const CornerMap cut = map_of(lattice, x, h, kernel, true),
@@ -94,7 +88,7 @@ TEST_CASE("where domains connect all, nodes are those of a grid that is not cut"
 
 TEST_CASE("legs that stand in one cell do not share its nodes") {
     const sim::Lattice lattice = two_legs(0, 6);
-    const Field x = rest(lattice, Vec3(0, 0, 0));
+    const Field x = tests::corners_at(lattice, Mat3::Identity(), Vec3(0, 0, 0));
     const CornerMap map = map_of(lattice, x, 8 * s, Kernel::Linear, true);
     std::set<int> left, right;
     for (const std::array<int, 8>& corners : lattice.corners)
@@ -111,7 +105,7 @@ TEST_CASE("legs that stand in one cell do not share its nodes") {
 TEST_CASE("legs share the nodes around what connects them, and no others") {
     const sim::Lattice lattice = two_legs(1, 11);
     const double h = 4 * s;
-    const Field x = rest(lattice, Vec3(0.01, 0.01, 0.01));
+    const Field x = tests::corners_at(lattice, Mat3::Identity(), Vec3(0.01, 0.01, 0.01));
     const CornerMap map = map_of(lattice, x, h, Kernel::Linear, true);
     const auto meets = [&](double z) {
         std::set<int> left, right;

@@ -1,4 +1,4 @@
-#include "sim/simulation.h"
+#include "tests/support/soft_block.h"
 
 #include <catch2/catch.hpp>
 
@@ -7,28 +7,6 @@
 namespace {
 
 constexpr double frame_time = 1.0 / 24;
-
-sim::Body cube(
-    const char* name, const Vec3& low, double edge, int n_domains, double young_modulus) {
-    sim::Body body;
-    body.name = name;
-    body.domain_size = edge / n_domains;
-    body.source.geometry = assets::Shape{assets::Box{low, low + Vec3::Constant(edge)}};
-    body.skins.push_back({"outside", {}});
-    sim::Region region;
-    region.name = "all";
-    region.select.is = sim::Selector::All{};
-    region.model = sim::Model::StableNeoHookean;
-    region.young_modulus = young_modulus;
-    region.poisson_ratio = 0.3;
-    region.density = 1000;
-    body.regions.push_back(region);
-    return body;
-}
-
-double energy(const sim::Stats& stats) {
-    return stats.kinetic_energy + stats.elastic_energy + stats.gravitational_energy;
-}
 
 }  // namespace
 
@@ -45,7 +23,7 @@ TEST_CASE("a block on a slope of 30 degrees slides (g sin - mu g cos) t²/2, or 
     scene.solver.method = sim::Method::Fem;
     // Friction follows the normal force of the step before: first order in dt.
     scene.solver.dt = 0.5e-3;
-    scene.bodies.push_back(cube("block", {0, 0, 0}, 0.2, 2, 1e7));
+    scene.bodies.push_back(tests::soft_cube("block", {0, 0, 0}, 0.2, 2, 1e7));
     scene.forces.push_back(sim::Gravity{{g * std::sin(angle), 0, -g * std::cos(angle)}});
     scene.colliders.push_back({sim::PlaneShape{{0, 0, 0}, {0, 0, 1}}, friction});
     scene.probes.push_back({"centre", "block", Vec3(0.1, 0.1, 0.1)});
@@ -64,7 +42,7 @@ TEST_CASE(
     scene.solver.method = GENERATE(sim::Method::Fem, sim::Method::Domains);
     scene.solver.dt = 2e-3;
     scene.solver.damping = 2;
-    scene.bodies.push_back(cube("cube", {-0.1, -0.1, 0.05}, 0.2, 4, 1e5));
+    scene.bodies.push_back(tests::soft_cube("cube", {-0.1, -0.1, 0.05}, 0.2, 4, 1e5));
     scene.forces.push_back(sim::Gravity{{0, 0, -10}});
     const sim::Friction rough = GENERATE(sim::Friction{false, 0.3}, sim::Friction{true, 0});
     if (which == 0)
@@ -75,12 +53,12 @@ TEST_CASE(
         scene.colliders.push_back({assets::Box{{-1, -1, -1}, {1, 1, 0}}, rough});
     scene.probes.push_back({"foot", "cube", Vec3(0, 0, 0.05)});
     sim::Simulation simulation(scene, frame_time);
-    double highest = energy(simulation.stats());
+    double highest = tests::energy(simulation.stats());
     const double fall = 8 * 10 * 0.05;  // m g h [J]
     for (int k = 1; k <= 60; ++k) {
         simulation.advance_to(0.05 * k);
-        CHECK(energy(simulation.stats()) < highest + 1e-3 * fall);
-        highest = std::max(highest, energy(simulation.stats()));
+        CHECK(tests::energy(simulation.stats()) < highest + 1e-3 * fall);
+        highest = std::max(highest, tests::energy(simulation.stats()));
     }
     CHECK(simulation.probes()[0].position.z() == Approx(0).margin(0.02 * 0.05));  // of a domain
     CHECK(simulation.stats().kinetic_energy < 1e-3 * fall);
@@ -90,8 +68,8 @@ TEST_CASE("two cubes meeting at 2 m/s keep their momentum, lose energy, and do n
     sim::Scene scene;
     scene.solver.method = GENERATE(sim::Method::Fem, sim::Method::Domains);
     scene.solver.dt = 1e-3;
-    sim::Body left = cube("left", {-0.31, 0, 0}, 0.3, 6, 1e5),
-              right = cube("right", {0.01, 0, 0}, 0.3, 6, 1e5);
+    sim::Body left = tests::soft_cube("left", {-0.31, 0, 0}, 0.3, 6, 1e5),
+              right = tests::soft_cube("right", {0.01, 0, 0}, 0.3, 6, 1e5);
     left.velocity = {1.5, 0.2, 0};
     right.velocity = {-0.5, 0.2, 0};
     scene.bodies = {left, right};
@@ -104,12 +82,12 @@ TEST_CASE("two cubes meeting at 2 m/s keep their momentum, lose energy, and do n
         const sim::Stats now = simulation.stats();
         CHECK((now.linear_momentum - start.linear_momentum).norm()
               < 1e-11 * start.linear_momentum.norm());
-        CHECK(energy(now) <= energy(start) * (1 + 1e-6));
+        CHECK(tests::energy(now) <= tests::energy(start) * (1 + 1e-6));
         const auto probes = simulation.probes();
         CHECK(probes[1].position.x() - probes[0].position.x() > 0.8 * 0.3);
     }
     // They met, and part again.
-    CHECK(energy(simulation.stats()) < 0.99 * energy(start));
+    CHECK(tests::energy(simulation.stats()) < 0.99 * tests::energy(start));
     CHECK(simulation.probes()[0].position.x() < -0.16 + 1.5 * 0.2 - 0.05);
 }
 
@@ -121,7 +99,7 @@ TEST_CASE("single linearised solves make no energy where a cube hits what stands
     scene.solver.method = sim::Method::Fem;
     scene.solver.steps = sim::Steps::SemiImplicit;
     scene.solver.dt = 4e-3;
-    scene.bodies.push_back(cube("cube", {-0.15, -0.15, 0.02}, 0.3, 6, 1e5));
+    scene.bodies.push_back(tests::soft_cube("cube", {-0.15, -0.15, 0.02}, 0.3, 6, 1e5));
     scene.bodies[0].velocity = {0, 0, -speed};
     if (on_sphere)
         scene.colliders.push_back({assets::Sphere{{0, 0, -0.5}, 0.5}, {}});
@@ -129,13 +107,13 @@ TEST_CASE("single linearised solves make no energy where a cube hits what stands
         scene.colliders.push_back({sim::PlaneShape{{0, 0, 0}, {0, 0, 1}}, {}});
     scene.probes.push_back({"cube", "cube", std::string("all")});
     sim::Simulation simulation(scene, frame_time);
-    const double start = energy(simulation.stats());
+    const double start = tests::energy(simulation.stats());
     CAPTURE(speed, on_sphere);
     for (int k = 1; k <= 20; ++k) {
         simulation.advance_to(4e-3 * k);
-        CHECK(energy(simulation.stats()) < 1.001 * start);
+        CHECK(tests::energy(simulation.stats()) < 1.001 * start);
     }
-    CHECK(energy(simulation.stats()) < 0.9 * start);  // it has met
+    CHECK(tests::energy(simulation.stats()) < 0.9 * start);  // it has met
     CHECK(simulation.probes()[0].position.z() > 0.05);
 }
 
@@ -144,8 +122,8 @@ TEST_CASE("how many equilibria lead to it changes nothing in how bodies are pres
     sim::Scene scene;
     scene.solver.method = sim::Method::Fem;
     scene.solver.steps = sim::Steps::Static;
-    scene.bodies = {cube("lower", {0, 0, 0}, 0.4, 4, 1e5),
-                    cube("upper", {0, 0, 0.41}, 0.4, 4, 1e5)};
+    scene.bodies = {tests::soft_cube("lower", {0, 0, 0}, 0.4, 4, 1e5),
+                    tests::soft_cube("upper", {0, 0, 0.41}, 0.4, 4, 1e5)};
     scene.pins = {
         {"floor", "lower", {sim::Selector::HalfSpace{{0, 0, 0.01}, {0, 0, 1}}, {}}, {}},
         {"ram",
