@@ -16,6 +16,7 @@ constexpr double steady = 0.01;   // change of how stiff bodies are, from measur
 constexpr int steady_drifts = 8;  // after which what is steady is measured again
 // w dt of the motion seen; beyond 2 it grows without bound.
 constexpr double most_excited = 1.9;
+constexpr double rounding = 1e-9;  // of a way
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int contact_passes = 6;
 constexpr double depth_tolerance = 1e-3;  // of a linearised depth, in domain edges
@@ -100,7 +101,7 @@ bool Stepper::try_explicit(State& state, double dt) {
     prescribe(scene_, assembly_, state.time, state.time + dt, prescribed_);
     transfer_to_nodes(state, state.x, state.v, &gradient_);
     prescribe_dofs(state, state.x, dt, dt);
-    begin_forces(state, length);
+    begin_forces(state);
 
     summary_ = {};
     quiet_drifts_ = state.quiet_drifts;
@@ -169,6 +170,7 @@ void Stepper::hold_prescribed() {
 
 bool Stepper::take_drifts(const State& state, double length) {
     begin_contact(state.x);
+    colliders_.begin_drift(state.x, infinity, state.time, length);
     if (!take_drift(state, 0, length))
         return false;
     inner_gradient_.assign(prescribed_.corners.size(), Vec3p{});
@@ -177,8 +179,9 @@ bool Stepper::take_drifts(const State& state, double length) {
                            + end_drift(length)))
             return false;
         add_at_pinned_nodes(1);
+        const double gone = longest_way(length);
         kick_between_drifts();
-        colliders_.begin_step(x_end_, state.top_speed, state.time + k * length, length);
+        colliders_.begin_drift(x_end_, gone, state.time + k * length, length);
         if (!take_drift(state, k, length))
             return false;
     }
@@ -197,26 +200,43 @@ bool Stepper::take_drift(const State& state, int number, double length) {
     if (!is_first)
         std::swap(x_drift_, x_end_);
     const Field& x = is_first ? state.x : x_drift_;
-    return drift_with_contact(state, x, state.time + number * length, length);
+    return drift_with_contact(state, x, number, length);
+}
+
+double Stepper::longest_way(double length) const {
+    // T takes means.
+    Vec3p squared{};
+    for (int i = 0; i < map_.n_dofs() && !colliders_.empty(); ++i)
+        squared = larger(squared, q_moved_[i] * q_moved_[i]);
+    return (1 + rounding) * length * std::sqrt(sum_of(squared));
 }
 
 bool Stepper::drift_with_contact(const State& state,
                                  const Field& x,
-                                 double time,
+                                 int number,
                                  double length) {
+    // Velocities are asked for where something may be met alone, as long as that is not everywhere.
+    const bool sees_all = n_drifts_ == 1 && !surfaces_.empty(),
+               has_thin = colliders_.has_thin();
     moved_.resize(x.size());
-    map_.apply(q_moved_, moved_);
+    map_.apply_at(grid_contact_->corners(), q_moved_, moved_);
     restrain_on_grid(x, length);
-    if (colliders_.largest_step(x, moved_, time, length) < length) {
+    if (sees_all || has_thin)
+        map_.apply(q_moved_, moved_);
+    const double time = state.time + number * length;
+    if (has_thin && colliders_.largest_step(x, moved_, time, length) < length) {
         summary_.termination = Termination::Unstable;  // a corner might pass through a collider
         drift(x, length);
         return false;
     }
-    const bool presses = n_drifts_ == 1 && restrain_by_surfaces(state, length);
+    const bool presses = sees_all && restrain_by_surfaces(state, length);
     // Many drifts under one map take more from a hit on slaved corners than as many under their own (test_drifts).
     const bool hits = restrain_by_colliders(x, length) > hard_hit && !map_.is_identity();
     quiet_drifts_ = presses || hits ? 0 : quiet_drifts_ + 1;
-    drift(x, length);
+    if (number + 1 == n_drifts_)
+        map_.move(x, length, q_moved_, x_end_, moved_);
+    else
+        map_.move(x, length, q_moved_, x_end_);
     return true;
 }
 
@@ -270,7 +290,12 @@ bool Stepper::is_clear_of_surfaces(const State& state, double dt) {
 }
 
 double Stepper::restrain_by_colliders(const Field& x, double length) {
-    std::vector<ColliderContact::Stop> stops = colliders_.stops(x, moved_, length, 0);
+    double way = longest_way(length);
+    const auto stops_there = [&](double least_depth) {
+        map_.apply_at(colliders_.touching(way), q_moved_, moved_);
+        return colliders_.stops(x, moved_, way, least_depth);
+    };
+    std::vector<ColliderContact::Stop> stops = stops_there(0);
     if (stops.empty())
         return 0;
     double deepest = 0;
@@ -280,11 +305,12 @@ double Stepper::restrain_by_colliders(const Field& x, double length) {
     for (int pass = 0; !stops.empty() && pass < contact_passes; ++pass) {
         for (const auto& [corner, depth, touch] : stops)
             impulses_->add(touch, impulses_->row_of(corner));
-        const double way = length * impulses_->settle(q_moved_, moved_);
-        if (way < depth_tolerance * colliders_.finest_edge())
+        const double change = length * impulses_->settle(q_moved_);
+        if (change < depth_tolerance * colliders_.finest_edge())
             break;
         // What the impulses have brought inside, or still is where the collider's surface turns.
-        stops = colliders_.stops(x, moved_, length, depth_tolerance);
+        way += change;
+        stops = stops_there(depth_tolerance);
     }
     return deepest;
 }

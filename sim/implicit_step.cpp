@@ -75,9 +75,8 @@ bool Stepper::solve_step(State& state, double dt, Scheme scheme) {
     };
     if (!minimize_with_contact(options, is_settled))
         return false;
-    moved_.resize(state.x.size());
-    map_.apply(q_, moved_);
     q_moved_ = q_;
+    move_corners();
     balance_momentum();
     return true;
 }
@@ -155,7 +154,8 @@ void Stepper::end_implicit(State& state, double dt) {
                / dt_hat_;
     });
     keep_inner_force(state);
-    restrain_on_grid(state.x, dt_hat_);
+    if (restrain_on_grid(state.x, dt_hat_))
+        move_corners();
     drift(potential_.step().x_n, dt_hat_);
     end_on_targets();
     commit(state, dt);
@@ -217,6 +217,14 @@ void Stepper::guess(const State& state, double dt) {
     const double damped = 1 + scene_.solver.damping * dt_hat_;
     for (int i = 0; i < map_.n_dofs(); ++i)
         q_[i] += step.is_free[i] * (step.q_tilde[i] + inverse_mass_[i] / damped * impulse[i]);
+}
+
+void Stepper::move_corners() {
+    moved_.resize(v_hat_.size());
+    map_.apply(q_moved_, moved_);
+    for (std::size_t b = 0; b < ranges_.size(); ++b)
+        for (int c = ranges_[b].begin; c < ranges_[b].end; ++c)
+            moved_[c] += shift_[b];
 }
 
 void Stepper::balance_momentum() {

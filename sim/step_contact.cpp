@@ -27,9 +27,8 @@ void Stepper::begin_contact(const Field& x) {
         pairs_on_grid(), ContactFields{x, assembly_.mass, assembly_.volume, assembly_.outside});
 }
 
-void Stepper::restrain_on_grid(const Field& x, double dt) {
-    if (!grid_contact_->is_empty())
-        grid_contact_->restrain(*impulses_, x, dt, q_moved_, moved_);
+bool Stepper::restrain_on_grid(const Field& x, double dt) {
+    return grid_contact_->restrain(*impulses_, x, dt, q_moved_, moved_);
 }
 
 void Stepper::drift(const Field& x_n, double length) {

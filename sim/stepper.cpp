@@ -83,15 +83,15 @@ void Stepper::begin_step(State& state, double dt, Scheme scheme) {
     q_.assign(map_.n_dofs(), Vec3p{});
     for (const PrescribedDof& held : held_)
         q_[held.dof] = held.velocity;
-    begin_forces(state, dt);
+    begin_forces(state);
+    colliders_.begin_step(state.x, state.top_speed, state.time, dt);
     grid_hold_.begin_step(potential_.step().x_n, dt_hat_);
 }
 
-void Stepper::begin_forces(const State& state, double dt) {
+void Stepper::begin_forces(const State& state) {
     for (std::size_t b = 0; b < points_.size(); ++b)
         if (points_[b])
             points_[b]->begin_step(state.points[b]);
-    colliders_.begin_step(state.x, state.top_speed, state.time, dt);
 }
 
 void Stepper::make_map(State& state, const Field& x) {

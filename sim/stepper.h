@@ -105,7 +105,7 @@ class Stepper {
     // stepper.cpp: what all steps share
     enum class Scheme { BackwardEuler, Bdf2 };
     void begin_step(State& state, double dt, Scheme scheme);
-    void begin_forces(const State& state, double dt);
+    void begin_forces(const State& state);
     void make_map(State& state, const Field& x);
     void choose_free_corners(int body, const Field& x);
     void start_scheme(const State& state, double dt, Scheme scheme);
@@ -165,7 +165,8 @@ class Stepper {
     // step_contact.cpp: contact after the velocities are known
     std::vector<GridPair> pairs_on_grid() const;
     void begin_contact(const Field& x);
-    void restrain_on_grid(const Field& x, double dt);
+    // Whether bodies meet; moved_ follows at grid_contact_->corners() alone.
+    bool restrain_on_grid(const Field& x, double dt);
     void drift(const Field& x_n, double length);
 
     // point_step.cpp: what points and APIC add to a step
@@ -195,6 +196,7 @@ class Stepper {
     void keep_inner_force(State& state);
     void guess(const State& state, double dt);
     bool start_from_rest();
+    void move_corners();
     void balance_momentum();
     void set_reactions();
 
@@ -210,7 +212,9 @@ class Stepper {
     void first_kick(const State& state);
     bool take_drifts(const State& state, double length);
     bool take_drift(const State& state, int number, double length);
-    bool drift_with_contact(const State& state, const Field& x, double time, double length);
+    bool drift_with_contact(const State& state, const Field& x, int number, double length);
+    // Of any corner in a drift, at most.   [m]
+    double longest_way(double length) const;
     void kick_between_drifts();
     void gather_forces_at_nodes(const Field& gradient);
     void hold_prescribed();

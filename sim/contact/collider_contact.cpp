@@ -11,6 +11,7 @@ namespace sim {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr int far = -1;                // in place of the number of a pair
 constexpr double impact_depth = 0.01;  // in domain edges
 constexpr double margin = 0.5;         // of the domain's edge, where corners count as near
 // That a corner may pass in a step where it is about to touch.
@@ -34,16 +35,25 @@ ColliderContact::ColliderContact(const std::vector<Collider>& colliders,
     finest_edge_ = infinity;
     for (const ContactCorner& corner : corners_)
         finest_edge_ = std::min(finest_edge_, corner.edge);
+    x_n_.resize(corners_.size());
+    starts_.resize(corners_.size() * colliders.size());
+    grips_.resize(starts_.size());
     for (const Collider& collider : colliders)
         colliders_.emplace_back(collider, finest_edge_, longest_reach(corners_));
     std::vector<int> indices;
     for (const ContactCorner& corner : corners_)
         indices.push_back(corner.corner);
     near_ = {std::move(indices), colliders_.size(), margin * finest_edge_};
-    pairs_.resize(corners_.size() * colliders_.size());
     for (const MovingCollider& collider : colliders_)
         poses_.push_back(collider.pose(0));
     start_poses_ = poses_;
+}
+
+bool ColliderContact::has_thin() const {
+    return std::any_of(
+        colliders_.begin(), colliders_.end(), [](const MovingCollider& collider) {
+            return std::isfinite(collider.thickness());
+        });
 }
 
 double ColliderContact::gap(int k, int j, const Vec3& X) const {
@@ -55,7 +65,7 @@ double ColliderContact::stiffness_of(int k, const Start& start) const {
     const double stop = impact_depth * corner.edge;
     double v = top_speed_.empty() ? 0 : top_speed_[corner.body];
     if (dt_ > 0)
-        v += (start.position - near_.start(k)).norm() / dt_;
+        v += (start.position - unpadded(x_n_[k])).norm() / dt_;
     return std::max(corner.stiffness, corner.mass * v * v / (stop * stop));
 }
 
@@ -69,8 +79,8 @@ double ColliderContact::depth_of(const ContactCorner& corner,
     return std::max(0.0, -(distance.gap + corner.outside));
 }
 
-ColliderContact::Start ColliderContact::start_of(int k, int j) const {
-    const Vec3 X = start_poses_[j].bring_back(near_.start(k));
+ColliderContact::Start ColliderContact::start_of(int k, int j, const Vec3p& x) const {
+    const Vec3 X = start_poses_[j].bring_back(unpadded(x));
     const MovingCollider::Distance distance = colliders_[j].distance(X);
     const Pose& end = poses_[j];
     // Unit also where a gradient of means over both sides of a wall is short.
@@ -94,40 +104,64 @@ double ColliderContact::depth_in_step(
     return std::max(0.0, -(start.gap + normal.dot(x - start.position)));
 }
 
-template <class Position, class Way, class Visit>
-void ColliderContact::for_pairs(const Position& at, const Way& way, const Visit& visit) const {
-    if (empty())
-        return;
+template <class From, class To, class Visit>
+void ColliderContact::for_pairs(double way,
+                                const From& start,
+                                const To& end,
+                                const Visit& visit) const {
     const int n_colliders = static_cast<int>(colliders_.size());
     const std::vector<int>& near = near_.near();
-    std::size_t next = 0;
-    Pair far;  // which grips nothing, as it does not touch at the start
+    int next = 0;
     for (const int k : near_.touching(way)) {
-        const bool is_near = next < near.size() && near[next] == k;
+        const bool is_near = next < static_cast<int>(near.size()) && near[next] == k;
         for (int j = 0; j < n_colliders; ++j) {
-            if (!is_near)
-                far.start = start_of(k, j);
-            const Pair& pair = is_near ? pairs_[next * n_colliders + j] : far;
+            const int pair = is_near ? next * n_colliders + j : far;
+            const Start begun = is_near ? starts_[pair] : start_of(k, j, start(k));
             Vec3 normal;
             const double depth =
-                depth_in_step(k, j, pair.start, unpadded(at(corners_[k].corner)), normal);
-            visit(k, j, pair, depth, normal);
+                depth_in_step(k, j, begun, unpadded(end(corners_[k].corner)), normal);
+            visit(k, j, begun, depth, normal, pair);
         }
         next += is_near;
     }
 }
 
 template <class Visit>
-void ColliderContact::for_touching(const Field& x, const Visit& visit) const {
+void ColliderContact::for_pairs(const Field& x, const Visit& visit) const {
+    if (empty())
+        return;
     for_pairs(
+        near_.farthest([&](int k) { return x[corners_[k].corner] - x_n_[k]; }),
+        [&](int k) { return x_n_[k]; },
         [&](int c) { return x[c]; },
-        [&](int c, const Vec3p& start) { return x[c] - start; },
-        [&](int k, int, const Pair& pair, double depth, const Vec3& normal) {
-            const ContactCorner& corner = corners_[k];
-            if (depth > 0 || pair.grip.holds())
-                visit(Touch{
-                    corner.corner, stiffness_of(k, pair.start), normal, depth, pair.grip});
+        visit);
+}
+
+template <class Visit>
+void ColliderContact::for_touching(const Field& x, const Visit& visit) const {
+    static const Grip none;  // as a far corner does not touch at the start
+    for_pairs(
+        x, [&](int k, int, const Start& start, double depth, const Vec3& normal, int pair) {
+            const Grip& grip = pair == far ? none : grips_[pair];
+            if (depth > 0 || grip.holds())
+                visit(Touch{corners_[k].corner, stiffness_of(k, start), normal, depth, grip});
         });
+}
+
+void ColliderContact::begin(const Field& x_n, double gone, double time, double dt) {
+    dt_ = dt;
+    const int n_colliders = static_cast<int>(colliders_.size());
+    for (int j = 0; j < n_colliders; ++j) {
+        start_poses_[j] = colliders_[j].pose(time);
+        poses_[j] = colliders_[j].pose(time + dt);
+    }
+    near_.begin_step(x_n, gone, start_poses_, poses_, [&](int k, int j, const Vec3& X) {
+        return gap(k, j, X);
+    });
+    starts_.clear();
+    for (const int k : near_.near())
+        for (int j = 0; j < n_colliders; ++j)
+            starts_.push_back(start_of(k, j, x_n[corners_[k].corner]));
 }
 
 void ColliderContact::begin_step(const Field& x_n,
@@ -136,37 +170,33 @@ void ColliderContact::begin_step(const Field& x_n,
                                  double dt) {
     if (empty())
         return;
+    begin(x_n, infinity, time, dt);
     top_speed_ = top_speed;
-    dt_ = dt;
-    const int n_colliders = static_cast<int>(colliders_.size());
-    for (int j = 0; j < n_colliders; ++j) {
-        start_poses_[j] = colliders_[j].pose(time);
-        poses_[j] = colliders_[j].pose(time + dt);
+    x_n_.clear();
+    for (const ContactCorner& corner : corners_)
+        x_n_.push_back(x_n[corner.corner]);
+    grips_.clear();
+    for (std::size_t pair = 0; pair < starts_.size(); ++pair) {
+        const Start& start = starts_[pair];
+        grips_.push_back(Grip::of(colliders_[pair % colliders_.size()].friction(),
+                                  stiffness_of(near_.near()[pair / colliders_.size()], start),
+                                  std::max(0.0, -start.gap),
+                                  dt,
+                                  start.normal,
+                                  start.position));
     }
-    near_.begin_step(
-        x_n, start_poses_, poses_, [&](int k, int j, const Vec3& X) { return gap(k, j, X); });
-    pairs_.clear();
-    for (const int k : near_.near())
-        for (int j = 0; j < n_colliders; ++j) {
-            const Start start = start_of(k, j);
-            const double depth = std::max(0.0, -start.gap);
-            pairs_.push_back({start,
-                              Grip::of(colliders_[j].friction(),
-                                       stiffness_of(k, start),
-                                       depth,
-                                       dt,
-                                       start.normal,
-                                       start.position)});
-        }
+}
+
+void ColliderContact::begin_drift(const Field& x_n, double gone, double time, double dt) {
+    if (!empty())
+        begin(x_n, gone, time, dt);
 }
 
 bool ColliderContact::has_changed_touch(const Field& x) const {
     bool has_changed = false;
-    for_pairs([&](int c) { return x[c]; },
-              [&](int c, const Vec3p& start) { return x[c] - start; },
-              [&](int, int, const Pair& pair, double depth, const Vec3&) {
-                  has_changed = has_changed || (depth > 0) != (pair.start.gap < 0);
-              });
+    for_pairs(x, [&](int, int, const Start& start, double depth, const Vec3&, int) {
+        has_changed = has_changed || (depth > 0) != (start.gap < 0);
+    });
     return has_changed;
 }
 
@@ -220,31 +250,44 @@ double ColliderContact::add_gradient(const Field& x, Field& gradient) const {
     return energy;
 }
 
-std::vector<ColliderContact::Stop> ColliderContact::stops(const Field& x,
+std::vector<int> ColliderContact::touching(double way) const {
+    std::vector<int> corners;
+    if (!empty())
+        for (const int k : near_.touching(way))
+            corners.push_back(corners_[k].corner);
+    return corners;
+}
+
+std::vector<ColliderContact::Stop> ColliderContact::stops(const Field& x_n,
                                                           const Field& v,
-                                                          double dt,
+                                                          double way,
                                                           double least_depth) const {
     std::vector<Stop> stops;
-    const auto end = [&](int c) { return x[c] + dt * v[c]; };
-    const auto way = [&](int c, const Vec3p&) { return dt * v[c]; };
-    for_pairs(end, way, [&](int k, int j, const Pair&, double depth, const Vec3& normal) {
-        const auto& [c, body, outside, stiffness, mass, edge] = corners_[k];
-        if (!(depth > least_depth * edge))
-            return;
-        const Vec3 at = unpadded(x[c]),
-                   carried = (poses_[j].carry(start_poses_[j].bring_back(at)) - at) / dt;
-        const double along = normal.dot(dt * (unpadded(v[c]) - carried));
-        stops.push_back({c,
-                         depth / edge,
-                         {normal, -depth - along, edge, colliders_[j].friction(), carried}});
-    });
+    if (empty())
+        return stops;
+    const auto start = [&](int k) { return x_n[corners_[k].corner]; };
+    const auto end = [&](int c) { return x_n[c] + dt_ * v[c]; };
+    for_pairs(way,
+              start,
+              end,
+              [&](int k, int j, const Start& begun, double depth, const Vec3& normal, int) {
+                  const auto& [c, body, outside, stiffness, mass, edge] = corners_[k];
+                  if (!(depth > least_depth * edge))
+                      return;
+                  const Vec3 carried = (begun.position - unpadded(x_n[c])) / dt_;
+                  const double along = normal.dot(dt_ * (unpadded(v[c]) - carried));
+                  stops.push_back(
+                      {c,
+                       depth / edge,
+                       {normal, -depth - along, edge, colliders_[j].friction(), carried}});
+              });
     return stops;
 }
 
 void ColliderContact::linearize(const Field& x) {
     blocks_.clear();
-    for (std::size_t i = 0; i < pairs_.size(); ++i)
-        if (Grip& grip = pairs_[i].grip; grip.holds()) {
+    for (std::size_t i = 0; i < grips_.size(); ++i)
+        if (Grip& grip = grips_[i]; grip.holds()) {
             const int k = near_.near()[i / colliders_.size()];
             grip.linearize(unpadded(x[corners_[k].corner]));
         }

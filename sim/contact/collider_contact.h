@@ -39,6 +39,9 @@ class ColliderContact : public ContactEnergy {
 
     bool empty() const { return colliders_.empty() || corners_.empty(); }
 
+    /// Whether corners might pass through any.
+    bool has_thin() const;
+
     /// Of the bodies' domains.   [m]
     double finest_edge() const { return finest_edge_; }
 
@@ -48,6 +51,10 @@ class ColliderContact : public ContactEnergy {
                     const std::vector<double>& top_speed,
                     double time,
                     double dt);
+
+    /// The same for one drift of an explicit step: what stops() asks for. `gone`: how far any corner has gone since the step
+    /// or drift before began, at most; infinite where nothing is known of it.   [m]
+    void begin_drift(const Field& x_n, double gone, double time, double dt);
 
     /// The longest step at x, v (#C) that lets no corner pass through a thin collider: up to where it touches, or, near
     /// that, a part of the thickness; infinite where none comes near within `dt`.   [s]
@@ -71,11 +78,14 @@ class ColliderContact : public ContactEnergy {
         Impulses::Touch touch;
     };
 
-    /// Those that velocities v (#C) would move from x by more than `least_depth` [domain edges] into a collider in a step of dt,
-    /// each with the collider as a plane where the corner would end.
-    std::vector<Stop> stops(const Field& x,
+    /// Those that may touch in the drift that has begun if none goes further than `way`, in the field of all corners.   [m]
+    std::vector<int> touching(double way) const;
+
+    /// Those of them that velocities v (#C) would move from x_n by more than `least_depth` [domain edges] into a collider, each
+    /// with the collider as a plane where the corner would end. v counts where touching(way) says.
+    std::vector<Stop> stops(const Field& x_n,
                             const Field& v,
-                            double dt,
+                            double way,
                             double least_depth) const;
 
     /// Of a corner in a collider.
@@ -97,11 +107,6 @@ class ColliderContact : public ContactEnergy {
         double gap = 0;                           // of the body's surface [m]
     };
 
-    struct Pair {
-        Start start;
-        Grip grip;
-    };
-
     struct Touch {
         int corner = 0;
         double stiffness = 0;  // k of the penalty [N/m]
@@ -112,7 +117,8 @@ class ColliderContact : public ContactEnergy {
 
     double gap(int k, int j, const Vec3& X) const;
     double stiffness_of(int k, const Start& start) const;
-    Start start_of(int k, int j) const;
+    Start start_of(int k, int j, const Vec3p& x) const;
+    void begin(const Field& x_n, double gone, double time, double dt);
     Vec3 gradient_of(const Touch& touch, const Field& x, double& energy) const;
     static Mat3 hessian_of(const Touch& touch);
     double depth_of(const ContactCorner& corner,
@@ -122,10 +128,13 @@ class ColliderContact : public ContactEnergy {
                     Vec3& normal) const;
     double depth_in_step(int k, int j, const Start& start, const Vec3& x, Vec3& normal) const;
 
-    // All that may touch where the step ends with corners of the field at `at(corner)`, as far from its start as NearCorners
-    // asks, corner by corner and by collider: visit(k, j, pair, depth, normal).
-    template <class Position, class Way, class Visit>
-    void for_pairs(const Position& at, const Way& way, const Visit& visit) const;
+    // All that may touch where the step ends with corners of the field at `end(corner)`, no further from start(k), where it
+    // began with them, than `way`; corner by corner and by collider: visit(k, j, start, depth, normal, number of the pair).
+    template <class From, class To, class Visit>
+    void for_pairs(double way, const From& start, const To& end, const Visit& visit) const;
+    // The same where corners end at x.
+    template <class Visit>
+    void for_pairs(const Field& x, const Visit& visit) const;
     template <class Visit>
     void for_touching(const Field& x, const Visit& visit) const;
 
@@ -133,7 +142,9 @@ class ColliderContact : public ContactEnergy {
     std::vector<ContactCorner> corners_;
     double finest_edge_ = 0;
     NearCorners near_;
-    std::vector<Pair> pairs_;        // (#near × #colliders)
+    Field x_n_;                      // (#corners) at the start of a step that is no drift [m]
+    std::vector<Start> starts_;      // of pairs (#near × #colliders)
+    std::vector<Grip> grips_;        // the same; of those that are not near none holds
     std::vector<double> top_speed_;  // (#bodies) of this step; none before the first [m/s]
     double dt_ = 0;                  // of this step [s]
     // (#colliders) at the start and the end of the step.

@@ -107,6 +107,13 @@ class GridContact::Pair {
 
     bool is_empty() const { return nodes_.empty(); }
 
+    void list_corners(std::vector<int>& corners) const {
+        for (const std::vector<Share>& shares : shares_)
+            for (const Share& share : shares)
+                if (corners.empty() || corners.back() != share.corner)
+                    corners.push_back(share.corner);
+    }
+
     void begin_drift() {
         for (Node& node : nodes_)
             node.is_pushed = false;
@@ -311,6 +318,10 @@ GridContact::GridContact(const std::vector<GridPair>& pairs, const ContactFields
         if (!made.is_empty())
             pairs_.push_back(std::move(made));
     }
+    for (const Pair& pair : pairs_)
+        pair.list_corners(corners_);
+    std::sort(corners_.begin(), corners_.end());
+    corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
 }
 
 GridContact::~GridContact() = default;
@@ -330,7 +341,7 @@ bool GridContact::restrain(Impulses& impulses, const Field& x, double dt, Field&
             pairs_[k].add_impulses(static_cast<int>(k), x, dt, v, impulses, meetings_);
         if (meetings_.size() == before)
             break;
-        impulses.settle(q, v);
+        impulses.settle(q, corners_, v);
     }
     return !meetings_.empty();
 }

@@ -59,8 +59,11 @@ class GridContact {
     /// Whether no two bodies are near each other.
     bool is_empty() const;
 
-    /// Changes velocities q of the degrees of freedom (#dofs), and v = T q (#C), which would move the corners from x in a
-    /// drift of dt [m/s]; returns whether bodies meet. `impulses` are the same as long as it lives.
+    /// The corners that bodies are near each other with, ascending.
+    const std::vector<int>& corners() const { return corners_; }
+
+    /// Changes velocities q of the degrees of freedom (#dofs), and v = T q at corners() (#C), which would move these from x
+    /// in a drift of dt [m/s]; returns whether bodies meet. `impulses` are the same as long as it lives.
     bool restrain(Impulses& impulses, const Field& x, double dt, Field& q, Field& v);
 
     /// Where bodies have met in the last restrain().
@@ -79,6 +82,7 @@ class GridContact {
     class Pair;
     ContactFields fields_;
     std::vector<Pair> pairs_;
+    std::vector<int> corners_;
     std::vector<Meeting> meetings_;
 };
 

@@ -70,6 +70,18 @@ int Impulses::add(const Touch& touch, const Row& row) {
 }
 
 double Impulses::settle(Field& q, Field& v) {
+    const double most = settle(q);
+    map_.add_applied(change_, v);
+    return most;
+}
+
+double Impulses::settle(Field& q, std::span<const int> corners, Field& v) {
+    const double most = settle(q);
+    map_.add_applied_at(corners, change_, v);
+    return most;
+}
+
+double Impulses::settle(Field& q) {
     change_ = q;
     sweep(q);
     double squared = 0;
@@ -77,7 +89,6 @@ double Impulses::settle(Field& q, Field& v) {
         change_[i] = q[i] - change_[i];
         squared = std::max(squared, dot(change_[i], change_[i]));
     }
-    map_.add_applied(change_, v);
     return std::sqrt(squared);  // T takes means
 }
 

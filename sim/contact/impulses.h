@@ -69,9 +69,13 @@ class Impulses {
     /// The mass that one pushes along its normal.   [kg]
     double mass(int number) const { return 1 / impulses_[number].inverse_along; }
 
-    /// Settles all, also those of earlier calls, until none changes a depth by more than 1e-4 domain edges; v = T q goes
-    /// along. Returns by how much any v changes, at most.   q (#dofs), v (#C) [m/s]
+    /// Settles all, also those of earlier calls, until none changes a depth by more than 1e-4 domain edges. Returns by how
+    /// much any v = T q changes, at most.   q (#dofs) [m/s]
+    double settle(Field& q);
+
+    /// The same, while v follows: everywhere, or at the corners listed.   v (#C) [m/s]
     double settle(Field& q, Field& v);
+    double settle(Field& q, std::span<const int> corners, Field& v);
 
   private:
     struct Impulse {

@@ -31,7 +31,6 @@ NearCorners::NearCorners(std::vector<int> corners, std::size_t n_colliders, doub
     : corners_(std::move(corners)),
       all_(corners_.size()),
       margin_(margin),
-      x_n_(corners_.size()),
       looked_at_(corners_.size()),
       far_(n_colliders) {
     std::iota(all_.begin(), all_.end(), 0);
@@ -46,29 +45,37 @@ double NearCorners::least_gap(int j, double way, const Pose& pose) const {
     return far_[j].gap - steepest_distance * (way + way_seen(far_[j].pose, pose, bounds_));
 }
 
+bool NearCorners::stands(double way, const std::vector<Pose>& poses) const {
+    for (int j = 0; j < static_cast<int>(far_.size()); ++j)
+        if (!(least_gap(j, way, poses[j]) > share_left * far_[j].gap))
+            return false;
+    return true;
+}
+
 void NearCorners::begin_step(const Field& x,
+                             double gone,
                              const std::vector<Pose>& from,
                              const std::vector<Pose>& to,
                              const Gap& gap) {
-    for (const int k : all_)
-        x_n_[k] = x[corners_[k]];
-    const int n_colliders = static_cast<int>(far_.size());
-    double way = farthest([&](int k) { return x_n_[k] - looked_at_[k]; });
-    for (int j = 0; j < n_colliders; ++j)
-        if (!(least_gap(j, way, from[j]) > share_left * far_[j].gap)) {
-            look(way, from, gap);
-            way = 0;
-            break;
-        }
+    way_ += gone;
+    if (!stands(way_, from))
+        way_ = way_since_look(x);
+    if (!stands(way_, from)) {
+        look(x, way_, from, gap);
+        way_ = 0;
+    }
     ++n_steps_;
     free_way_ = infinity;
-    for (int j = 0; j < n_colliders; ++j)
+    for (int j = 0; j < static_cast<int>(far_.size()); ++j)
         free_way_ = std::min(free_way_,
-                             least_gap(j, way, from[j]) / steepest_distance
-                                 - way_seen(from[j], to[j], bounds_.widened(way)));
+                             least_gap(j, way_, from[j]) / steepest_distance
+                                 - way_seen(from[j], to[j], bounds_.widened(way_)));
 }
 
-void NearCorners::look(double way, const std::vector<Pose>& poses, const Gap& gap) {
+void NearCorners::look(const Field& x,
+                       double way,
+                       const std::vector<Pose>& poses,
+                       const Gap& gap) {
     const int n_colliders = static_cast<int>(far_.size());
     const double ahead = n_steps_ > 0 ? steepest_distance * steps_ahead / n_steps_ : 0;
     std::vector<double> margins, gaps(far_.size());
@@ -80,10 +87,11 @@ void NearCorners::look(double way, const std::vector<Pose>& poses, const Gap& ga
     near_.clear();
     bounds_ = {};
     for (const int k : all_) {
-        bounds_.add(x_n_[k]);
+        looked_at_[k] = x[corners_[k]];
+        bounds_.add(looked_at_[k]);
         bool is_near = false;
         for (int j = 0; j < n_colliders; ++j) {
-            gaps[j] = gap(k, j, poses[j].bring_back(start(k)));
+            gaps[j] = gap(k, j, poses[j].bring_back(unpadded(looked_at_[k])));
             is_near = is_near || gaps[j] < margins[j];
         }
         if (is_near)
@@ -95,7 +103,6 @@ void NearCorners::look(double way, const std::vector<Pose>& poses, const Gap& ga
     // Where none is far, all are looked at again once they may have left.
     for (int j = 0; j < n_colliders; ++j)
         far_[j].gap = std::isinf(far_[j].gap) ? margins[j] : far_[j].gap;
-    looked_at_ = x_n_;
     n_steps_ = 0;
 }
 

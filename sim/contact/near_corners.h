@@ -29,21 +29,29 @@ class NearCorners {
     const std::vector<int>& near() const { return near_; }
 
     /// Begins a step at x (#C) in which colliders go from one pose to the other (#colliders); looks at all corners again
-    /// where far ones may have come much nearer.
+    /// where far ones may have come much nearer. `gone`: how far any has gone since the step before began, at most; infinite
+    /// where nothing is known of it.   [m]
     void begin_step(const Field& x,
+                    double gone,
                     const std::vector<Pose>& from,
                     const std::vector<Pose>& to,
                     const Gap& gap);
 
-    /// Where corner k was at the start of the step.   [m]
-    Vec3 start(int k) const { return unpadded(x_n_[k]); }
+    /// Those that may touch when no corner ends the step further from its start than `way`: the near ones, or all.   [m]
+    const std::vector<int>& touching(double way) const {
+        return way < free_way_ ? near_ : all_;
+    }
 
-    /// Those that may touch when the step ends with corners of the field as far from its start as way(corner, start): the
-    /// near ones, or all.   [m]
-    template <class Way>
-    const std::vector<int>& touching(const Way& way) const {
-        const double longest = farthest([&](int k) { return way(corners_[k], x_n_[k]); });
-        return longest < free_way_ ? near_ : all_;
+    /// At least the length of the longest motion(k): by the largest along each axis.
+    template <class Motion>
+    double farthest(const Motion& motion) const {
+        Vec3p squared{};
+        const int n = static_cast<int>(corners_.size());
+        for (int k = 0; k < n; ++k) {
+            const Vec3p u = motion(k);
+            squared = larger(u * u, squared);
+        }
+        return std::sqrt(squared[0] + squared[1] + squared[2]);
     }
 
     /// Those that may be as near to collider j as they go in dt, seen from it: from x with velocities v (#C) while it goes
@@ -62,32 +70,22 @@ class NearCorners {
         Pose pose;       // of the collider then
     };
 
-    // At least the length of the longest motion(k): by the largest along each axis.   [m]
-    template <class Motion>
-    double farthest(const Motion& motion) const {
-        Vec3p squared{};
-        const int n = static_cast<int>(corners_.size());
-        for (int k = 0; k < n; ++k) {
-            const Vec3p u = motion(k);
-            squared = larger(u * u, squared);
-        }
-        return std::sqrt(squared[0] + squared[1] + squared[2]);
-    }
-
     double way_since_look(const Field& x) const;
     // Of far corners from collider j at `pose`, when none has gone further than `way` since the look.   [m]
     double least_gap(int j, double way, const Pose& pose) const;
-    void look(double way, const std::vector<Pose>& poses, const Gap& gap);
+    // Whether far ones have kept much of their gaps when none has gone further than `way` since the look.
+    bool stands(double way, const std::vector<Pose>& poses) const;
+    void look(const Field& x, double way, const std::vector<Pose>& poses, const Gap& gap);
 
     std::vector<int> corners_, all_, near_;
     double margin_ = 0;    // [m]
-    Field x_n_;            // (#corners) at the start of the step [m]
     double free_way_ = 0;  // that all may go in the step while no far one can touch [m]
 
     // Of the last look:
     Field looked_at_;                        // (#corners) [m]
     PaddedBounds bounds_{Vec3p{}, Vec3p{}};  // of all corners [m]
     std::vector<Far> far_;                   // (#colliders)
+    double way_ = 0;                         // that any corner has gone since, at most [m]
     int n_steps_ = 0;                        // begun since
 };
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace sim {
@@ -71,8 +72,15 @@ class CornerMap {
     /// x = x_n + dt T q.   x_n, x (#C), q (#dofs)
     void move(const Field& x_n, double dt, const Field& q, Field& x) const;
 
+    /// The same, and u = T q.   u (#C)
+    void move(const Field& x_n, double dt, const Field& q, Field& x, Field& u) const;
+
     /// u = T q at slaves alone.   q (#dofs), u (#C)
     void apply_to_slaves(const Field& q, Field& u) const;
+
+    /// u = T q and u += T q at the corners listed, each once.   q (#dofs), u (#C)
+    void apply_at(std::span<const int> corners, const Field& q, Field& u) const;
+    void add_applied_at(std::span<const int> corners, const Field& q, Field& u) const;
 
     /// q = Tᵀ f.   f (#C), q (#dofs)
     void apply_transposed(const Field& f, Field& q) const;
@@ -184,6 +192,9 @@ class CornerMap {
     void visit_slaves(const Field& q, const Write& write) const;
     template <class Write>
     void visit_corners(const Field& q, const Write& write) const;
+    template <class Write>
+    void visit_listed(std::span<const int> corners, const Field& q, const Write& write) const;
+    const Part& part_of(int group) const;
 
     // corner_map_transposed.cpp, of value(corner)
     template <bool squared, class Value>
@@ -216,6 +227,7 @@ class CornerMap {
     std::vector<int> group_nodes_;                          // (#entries) degrees of freedom
     std::vector<int> slave_corner_;                         // (#slaves) grouped
     std::vector<int> slave_of_corner_;                      // (#C) where it is no free one
+    std::vector<int> group_of_slave_;                       // (#slaves)
     Field slave_local_;                                     // (#slaves) t of Spline
     std::vector<std::array<double, 8>> trilinear_weights_;  // of slaves with linear kernels
     mutable std::vector<Shares> shares_;                    // scratch of the gathers

@@ -59,6 +59,7 @@ void CornerMap::rebuild(const Field& corners,
     group_nodes_.clear();
     slave_corner_.clear();
     slave_local_.clear();
+    group_of_slave_.clear();
     trilinear_weights_.clear();
     for (std::size_t b = 0; b < bodies.size(); ++b)
         rebuild_body(corners, bodies[b], static_cast<int>(b));
@@ -176,6 +177,7 @@ void CornerMap::group_occupied_cells() {
         for (; occupied_[w] != 0; occupied_[w] &= occupied_[w] - 1) {
             const int cell = static_cast<int>(w) * word + std::countr_zero(occupied_[w]);
             const int end = begin + std::exchange(cell_slave_[cell], begin);
+            group_of_slave_.resize(end, static_cast<int>(groups_.size()));
             groups_.push_back({begin, end});
             base_.push_back(cell);
             begin = end;

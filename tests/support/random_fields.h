@@ -1,8 +1,10 @@
-// Random vectors from a fixed seed, and products of fields.
+// Random vectors from a fixed seed, products and differences of fields.
 #pragma once
 
 #include "sim/base/field.h"
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace tests {
@@ -38,6 +40,17 @@ inline sim::Field sum(const sim::Field& a, double factor, const sim::Field& b) {
     for (std::size_t i = 0; i < a.size(); ++i)
         result[i] = a[i] + factor * b[i];
     return result;
+}
+
+inline double longest(const sim::Field& u) {
+    double squared = 0;
+    for (const sim::Vec3p& v : u)
+        squared = std::max(squared, sim::dot(v, v));
+    return std::sqrt(squared);
+}
+
+inline double largest_difference(const sim::Field& a, const sim::Field& b) {
+    return longest(sum(a, -1, b));
 }
 
 }  // namespace tests

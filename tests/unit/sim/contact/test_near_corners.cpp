@@ -17,15 +17,19 @@ const sim::Friction smooth{false, 0};
 const sim::PlaneShape ground{{0, 0, 0}, {0, 0, 1}};
 const std::vector<double> at_rest{0};  // top speeds
 
-/// Colliders and corners, one contact that has followed all steps.
+/// Colliders and corners, one contact that has followed all steps, and one that has followed them as drifts.
 struct Followed {
     std::vector<Collider> colliders;
     std::vector<sim::ContactCorner> corners;
     std::vector<sim::MovingCollider> all;
-    ColliderContact contact;
+    ColliderContact contact, drifting;
+    Field x_before;
 
     Followed(const std::vector<Collider>& of, std::size_t n_corners)
-        : colliders(of), corners(corners_of(n_corners)), contact(of, corners) {
+        : colliders(of),
+          corners(corners_of(n_corners)),
+          contact(of, corners),
+          drifting(contact) {
         for (const Collider& collider : of)
             all.emplace_back(collider, edge);
     }
@@ -84,15 +88,31 @@ struct Followed {
         contact.linearize(x_end);
         contact.add_diagonal(diagonal);
         CHECK((tests::dot(diagonal, diagonal) > 0) == (energy > 0));
-        const auto stops = contact.stops(x_n, v, dt, least_depth);
+        check_stops(contact, x_n, v, depths);
+        drifting.begin_drift(
+            x_n, x_before.empty() ? 0 : tests::largest_difference(x_n, x_before), time, dt);
+        check_stops(drifting, x_n, v, depths);
+        x_before = x_n;
+        return energy;
+    }
+
+    /// v counts at those that touch alone.
+    static void check_stops(const ColliderContact& contact,
+                            const Field& x_n,
+                            const Field& v,
+                            const std::vector<double>& depths) {
+        const double way = dt * tests::longest(v);
+        Field known(v.size());
+        for (const int c : contact.touching(way))
+            known[c] = v[c];
+        const auto stops = contact.stops(x_n, known, way, least_depth);
         REQUIRE(stops.size() == depths.size());
         for (std::size_t i = 0; i < stops.size(); ++i) {
             const auto& [corner, depth, touch] = stops[i];
             CHECK(depth * edge == Approx(depths[i]).margin(1e-12));
-            const Vec3 way = dt * (sim::unpadded(v[corner]) - touch.carried);
-            CHECK(-(touch.gap + touch.normal.dot(way)) == Approx(depths[i]).margin(1e-12));
+            const Vec3 gone = dt * (sim::unpadded(v[corner]) - touch.carried);
+            CHECK(-(touch.gap + touch.normal.dot(gone)) == Approx(depths[i]).margin(1e-12));
         }
-        return energy;
     }
 };
 

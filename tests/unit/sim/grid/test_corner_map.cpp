@@ -171,7 +171,35 @@ TEST_CASE("corners move by what T gives them, wherever they come from") {
         for (int c = 0; c < s.n_corners(); ++c)
             REQUIRE(sim::unpadded(x[c] - (s.corners[c] + dt * u[c])).norm()
                     <= 1e-15 * (2 + offset.norm()));
+        Field x_too, u_too;
+        s.map.move(s.corners, dt, q, x_too, u_too);
+        CHECK(tests::largest_difference(x_too, x) <= 1e-15 * (2 + offset.norm()));
+        CHECK(tests::largest_difference(u_too, u) <= 1e-15);
     }
+}
+
+TEST_CASE("T at a few corners is that at all, and leaves the others alone") {
+    tests::Random random(23);
+    Sample s = sample(offsets[1]);
+    s.bodies[0].kernel = GENERATE(sim::Kernel::Linear, sim::Kernel::Quadratic);
+    s.bodies[1].kernel = sim::Kernel::Cubic;
+    s.map.rebuild(s.corners, s.free, s.bodies);
+    const Field q = tests::random_field(s.map.n_dofs(), random),
+                before = tests::random_field(s.n_corners(), random);
+    Field all(s.n_corners()), set = before, added = before;
+    s.map.apply(q, all);
+    std::vector<int> corners;
+    for (int c = s.n_corners() - 1; c >= 0; c -= 3)
+        corners.push_back(c);
+    s.map.apply_at(corners, q, set);
+    s.map.add_applied_at(corners, q, added);
+    Field expected_set = before, expected_added = before;
+    for (const int c : corners) {
+        expected_set[c] = all[c];
+        expected_added[c] = before[c] + all[c];
+    }
+    CHECK(tests::largest_difference(set, expected_set) <= 1e-15);
+    CHECK(tests::largest_difference(added, expected_added) <= 1e-15);
 }
 
 TEST_CASE("the gathers are the transposes of T and of its squares") {
