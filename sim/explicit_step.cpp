@@ -115,7 +115,9 @@ bool Stepper::try_explicit(State& state, double dt) {
         summary_.termination = Termination::Unstable;
         return false;
     }
-    if (!std::isfinite(potential_.elastic_gradient(x_end_, end_gradient_) + end_drift(length)))
+    if (!std::isfinite(potential_.elastic_gradient(x_end_, end_gradient_)
+                       + end_drift(state.x, length))
+        || (n_drifts_ > 1 && !has_kept_way(state.x, true)))
         return false;
     add_at_pinned_nodes(0.5);
     const double frequency = second_kick(n_drifts_ == 1 ? gradient_ : gradient_before_);
@@ -176,7 +178,7 @@ bool Stepper::take_drifts(const State& state, double length) {
     inner_gradient_.assign(prescribed_.corners.size(), Vec3p{});
     for (int k = 1; k < n_drifts_; ++k) {
         if (!std::isfinite(potential_.elastic_gradient(x_end_, gradient_before_)
-                           + end_drift(length)))
+                           + end_drift(state.x, length)))
             return false;
         add_at_pinned_nodes(1);
         const double gone = longest_way(length);
@@ -186,14 +188,15 @@ bool Stepper::take_drifts(const State& state, double length) {
             return false;
     }
     return n_drifts_ == 1
-           || (has_kept_way(state.x) && is_clear_of_surfaces(state, n_drifts_ * length));
+           || (has_kept_way(state.x, false) && is_clear_of_surfaces(state, n_drifts_ * length));
 }
 
 bool Stepper::take_drift(const State& state, int number, double length) {
     // Velocities of corners are of use where something may be met, and to the kick that ends the step.
     const bool is_first = number == 0, is_last = number + 1 == n_drifts_;
     if (!is_last && colliders_.empty() && grid_contact_->is_empty()) {
-        map_.move(is_first ? state.x : x_end_, length, q_moved_, x_end_);
+        map_.move_bodies(
+            bodies_of_domains_, is_first ? state.x : x_end_, length, q_moved_, x_end_);
         ++quiet_drifts_;
         return true;
     }
@@ -233,10 +236,9 @@ bool Stepper::drift_with_contact(const State& state,
     // Many drifts under one map take more from a hit on slaved corners than as many under their own (test_drifts).
     const bool hits = restrain_by_colliders(x, length) > hard_hit && !map_.is_identity();
     quiet_drifts_ = presses || hits ? 0 : quiet_drifts_ + 1;
-    if (number + 1 == n_drifts_)
-        map_.move(x, length, q_moved_, x_end_, moved_);
-    else
-        map_.move(x, length, q_moved_, x_end_);
+    const bool is_last = number + 1 == n_drifts_;
+    map_.move_bodies(
+        bodies_of_domains_, x, length, q_moved_, x_end_, is_last ? &moved_ : nullptr);
     return true;
 }
 
@@ -268,9 +270,12 @@ void Stepper::gather_forces_at_nodes(const Field& gradient) {
             map_.gather_at_nodes(static_cast<int>(b), assembly_.force, gradient, node_force_);
 }
 
-bool Stepper::has_kept_way(const Field& x) const {
+bool Stepper::has_kept_way(const Field& x, bool of_points) const {
     // The length of the step was chosen by speeds at its start.
-    for (const CornerMap::BodyRange& range : ranges_) {
+    for (std::size_t b = 0; b < ranges_.size(); ++b) {
+        if ((points_[b] != nullptr) != of_points)
+            continue;
+        const CornerMap::BodyRange& range = ranges_[b];
         double squared = 0;
         for (int c = range.begin; c < range.end; ++c)
             squared = std::max(squared, dot(x_end_[c] - x[c], x_end_[c] - x[c]));

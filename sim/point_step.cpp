@@ -125,7 +125,7 @@ void Stepper::add_start_gradient(Field& gradient) {
             points->add_start_gradient(gradient);
 }
 
-double Stepper::end_drift(double length) {
+double Stepper::end_drift(const Field& x_n, double length) {
     for (int i = map_.n_free(); i < map_.n_dofs(); ++i)
         way_[i] += length * q_moved_[i];
     if (!has_points_)
@@ -135,7 +135,7 @@ double Stepper::end_drift(double length) {
     double energy = 0;
     for (const auto& points : points_)
         if (points)
-            energy += points->end_drift(way_, grid_gradient_);
+            energy += points->end_drift(way_, x_n, x_end_, grid_gradient_);
     return energy;
 }
 

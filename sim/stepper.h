@@ -176,8 +176,8 @@ class Stepper {
     // From force_on(k-th pinned node, its degree of freedom).   [N]
     void set_node_reactions(const std::function<Vec3p(int, int)>& force_on);
     void add_start_gradient(Field& gradient);
-    // The energy of points there.
-    double end_drift(double length);
+    // Moves points from where the step began; returns their energy there.
+    double end_drift(const Field& x_n, double length);
     void add_at_pinned_nodes(double share);
     double seen_frequency_of_points();
     double relative_limit(const State& state) const;
@@ -218,7 +218,8 @@ class Stepper {
     void kick_between_drifts();
     void gather_forces_at_nodes(const Field& gradient);
     void hold_prescribed();
-    bool has_kept_way(const Field& x) const;
+    // Of bodies of points, or of the others.
+    bool has_kept_way(const Field& x, bool of_points) const;
     bool is_clear_of_surfaces(const State& state, double dt);
     // Returns how deep a corner would have got in, in domain edges.
     double restrain_by_colliders(const Field& x, double length);
@@ -249,6 +250,7 @@ class Stepper {
     GridHold grid_hold_;                                // of this step, implicit
     std::vector<std::unique_ptr<PointEnergy>> points_;  // (#bodies)
     bool has_points_ = false;
+    std::vector<int> bodies_of_domains_;
     IncrementalPotential potential_;
     NewtonScratch scratch_;
     NewtonSummary summary_;        // of the last solve

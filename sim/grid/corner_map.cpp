@@ -58,32 +58,35 @@ void CornerMap::visit_corners(const Field& q, const Write& write) const {
     visit_slaves<false>(q, write);
 }
 
-/// The same at slaves alone; at all, or at those of stencils of which a node moves.
+/// The same at slaves of a body alone; at all, or at those of stencils of which a node moves.
+template <bool passes_by_rest, class Write>
+void CornerMap::visit_slaves(const Part& part, const Field& q, const Write& write) const {
+    visit_spline(part.kernel, [&]<class S>(S) {
+        constexpr int n = S::n, per_group = n * n * n;
+        for_chunks(part.last_group - part.first_group, group_chunk, [&](int begin, int end) {
+            for (int k = begin; k < end; ++k) {
+                const Group& group = groups_[part.first_group + k];
+                const int* nodes = &group_nodes_[part.first_entry + k * per_group];
+                Vec3p v[per_group];
+                for (int a = 0; a < per_group; ++a)
+                    v[a] = q[nodes[a]];
+                if (passes_by_rest && !moves(v, per_group))
+                    continue;
+                for (int s = group.begin; s < group.end; ++s)
+                    if constexpr (n == 2)
+                        write(slave_corner_[s],
+                              trilinear_sum(trilinear_weights_[part.first_trilinear + s], v));
+                    else
+                        write(slave_corner_[s], spline_sum<S>(slave_local_[s], v));
+            }
+        });
+    });
+}
+
 template <bool passes_by_rest, class Write>
 void CornerMap::visit_slaves(const Field& q, const Write& write) const {
     for (const Part& part : parts_)
-        visit_spline(part.kernel, [&]<class S>(S) {
-            constexpr int n = S::n, per_group = n * n * n;
-            for_chunks(
-                part.last_group - part.first_group, group_chunk, [&](int begin, int end) {
-                    for (int k = begin; k < end; ++k) {
-                        const Group& group = groups_[part.first_group + k];
-                        const int* nodes = &group_nodes_[part.first_entry + k * per_group];
-                        Vec3p v[per_group];
-                        for (int a = 0; a < per_group; ++a)
-                            v[a] = q[nodes[a]];
-                        if (passes_by_rest && !moves(v, per_group))
-                            continue;
-                        for (int s = group.begin; s < group.end; ++s)
-                            if constexpr (n == 2)
-                                write(slave_corner_[s],
-                                      trilinear_sum(
-                                          trilinear_weights_[part.first_trilinear + s], v));
-                            else
-                                write(slave_corner_[s], spline_sum<S>(slave_local_[s], v));
-                    }
-                });
-        });
+        visit_slaves<passes_by_rest>(part, q, write);
 }
 
 /// The same at corners of a list.
@@ -130,11 +133,28 @@ void CornerMap::move(const Field& x_n, double dt, const Field& q, Field& x) cons
     visit_corners(q, [&](int c, const Vec3p& v) { x[c] = x_n[c] + dt * v; });
 }
 
-void CornerMap::move(const Field& x_n, double dt, const Field& q, Field& x, Field& u) const {
+void CornerMap::move_bodies(std::span<const int> bodies,
+                            const Field& x_n,
+                            double dt,
+                            const Field& q,
+                            Field& x,
+                            Field* u) const {
     x.resize(x_n.size());
-    u.resize(x_n.size());
-    visit_corners(q, [&](int c, const Vec3p& v) {
-        u[c] = v;
+    const auto visit = [&](const auto& write) {
+        for (const int b : bodies) {
+            const Part& part = parts_[b];
+            for_chunks(part.last_free - part.first_free, node_chunk, [&](int begin, int end) {
+                for (int k = part.first_free + begin; k < part.first_free + end; ++k)
+                    write(free_corner_[k], q[k]);
+            });
+            visit_slaves<false>(part, q, write);
+        }
+    };
+    if (u == nullptr)
+        return visit([&](int c, const Vec3p& v) { x[c] = x_n[c] + dt * v; });
+    u->resize(x_n.size());
+    visit([&](int c, const Vec3p& v) {
+        (*u)[c] = v;
         x[c] = x_n[c] + dt * v;
     });
 }

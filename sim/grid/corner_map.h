@@ -72,8 +72,13 @@ class CornerMap {
     /// x = x_n + dt T q.   x_n, x (#C), q (#dofs)
     void move(const Field& x_n, double dt, const Field& q, Field& x) const;
 
-    /// The same, and u = T q.   u (#C)
-    void move(const Field& x_n, double dt, const Field& q, Field& x, Field& u) const;
+    /// The same of some bodies alone, and u = T q of them where it is asked for.   u (#C)
+    void move_bodies(std::span<const int> bodies,
+                     const Field& x_n,
+                     double dt,
+                     const Field& q,
+                     Field& x,
+                     Field* u = nullptr) const;
 
     /// u = T q at slaves alone.   q (#dofs), u (#C)
     void apply_to_slaves(const Field& q, Field& u) const;
@@ -131,6 +136,11 @@ class CornerMap {
     /// sums += Gᵀ f(G q) in one go; f replaces gradients by what goes back. Factor::Slope.
     void add_through(int body, const Field& q, const AtSlaves& f, Field& sums) const;
 
+    /// Such an f that also sees T q at the slaves.
+    using AtMovedSlaves =
+        std::function<void(const Slaves& slaves, const Vec3p* Tq, Gradient* values)>;
+    void add_through(int body, const Field& q, const AtMovedSlaves& f, Field& sums) const;
+
     /// All slaves of a body; `chunk` is the number of chunks.
     Slaves slaves_of(int body) const;
 
@@ -158,6 +168,7 @@ class CornerMap {
     struct Part {
         Kernel kernel = Kernel::Linear;
         double cell_size = 0;
+        int first_free = 0, last_free = 0;  // degrees of freedom
         int first_group = 0, last_group = 0, first_node = 0, last_node = 0;
         std::size_t first_entry = 0;
         int first_trilinear = 0;  // added to a slave's number, of linear kernels
@@ -189,6 +200,8 @@ class CornerMap {
 
     // corner_map.cpp
     template <bool passes_by_rest, class Write>
+    void visit_slaves(const Part& part, const Field& q, const Write& write) const;
+    template <bool passes_by_rest, class Write>
     void visit_slaves(const Field& q, const Write& write) const;
     template <class Write>
     void visit_corners(const Field& q, const Write& write) const;
@@ -211,9 +224,8 @@ class CornerMap {
     void gather_nodes(const Part& part, const Value& value, Field& q) const;
 
     // corner_map_gradients.cpp
-    template <class S>
-    void pass(
-        const Part& part, Factor factor, const Field* q, const AtSlaves& f, Field* sums) const;
+    template <class S, class F>
+    void pass(const Part& part, Factor factor, const Field* q, const F& f, Field* sums) const;
 
     // group_sums.h
     template <class Sum>

@@ -4,6 +4,7 @@
 #include "sim/grid/kernel.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace sim {
 
@@ -34,11 +35,15 @@ struct Factors {
     }
 };
 
-/// Σ_i v_i ∂w_i, summed along x, then y, then z.
-template <class S>
-[[gnu::always_inline]] inline Gradient gradient_at(const Factors<S>& at, const Vec3p* v) {
+/// Σ_i v_i ∂w_i, summed along x, then y, then z; and Σ_i v_i w_i where it is asked for.
+template <class S, bool with_mean>
+[[gnu::always_inline]] inline Gradient gradient_at(const Factors<S>& at,
+                                                   const Vec3p* v,
+                                                   Vec3p& mean) {
     constexpr int n = S::n;
     Gradient sum{};
+    if constexpr (with_mean)
+        mean = Vec3p{};
 #pragma GCC unroll 4
     for (int c = 0; c < n; ++c) {
         Vec3p plane[3] = {};
@@ -52,6 +57,8 @@ template <class S>
         sum.column[0] += at.w[c][2] * plane[0];
         sum.column[1] += at.w[c][2] * plane[1];
         sum.column[2] += at.d[c][2] * plane[2];
+        if constexpr (with_mean)
+            mean += at.w[c][2] * plane[2];
     }
     return sum;
 }
@@ -75,9 +82,10 @@ template <class S, int rows>
 
 }  // namespace
 
-template <class S>
+template <class S, class F>
 void CornerMap::pass(
-    const Part& part, Factor factor, const Field* q, const AtSlaves& f, Field* sums) const {
+    const Part& part, Factor factor, const Field* q, const F& f, Field* sums) const {
+    constexpr bool with_mean = std::is_same_v<F, AtMovedSlaves>;
     constexpr int n = S::n, per_group = n * n * n;
     constexpr int rows = n == 4 ? 2 : n;  // summed at once, so that the sums live in registers
     const Group* groups = groups_.data() + part.first_group;
@@ -87,20 +95,27 @@ void CornerMap::pass(
     const auto pass_block = [&](int begin, int end, Shares* shares) {
         thread_local std::vector<Factors<S>> factors;
         thread_local std::vector<Gradient> values;
+        thread_local Field means;
         const int first = groups[begin].begin, last = groups[end - 1].end;
         factors.clear();
         for (int s = first; s < last; ++s)
             factors.emplace_back(factor, slave_local_[s], part.cell_size);
         values.resize(last - first);
+        means.resize(last - first);
         if (q != nullptr)
             for (int k = begin; k < end; ++k) {
                 Vec3p v[per_group];
                 for (int a = 0; a < per_group; ++a)
                     v[a] = (*q)[group_nodes[k * per_group + a]];
                 for (int s = groups[k].begin; s < groups[k].end; ++s)
-                    values[s - first] = gradient_at(factors[s - first], v);
+                    values[s - first] =
+                        gradient_at<S, with_mean>(factors[s - first], v, means[s - first]);
             }
-        f({first, last, begin / group_block}, values.data());
+        const Slaves slaves{first, last, begin / group_block};
+        if constexpr (with_mean)
+            f(slaves, means.data(), values.data());
+        else
+            f(slaves, values.data());
         if (shares == nullptr)
             return;
         for (int k = begin; k < end; ++k) {
@@ -146,6 +161,14 @@ void CornerMap::add_transposed(int body,
 }
 
 void CornerMap::add_through(int body, const Field& q, const AtSlaves& f, Field& sums) const {
+    const Part& part = parts_[body];
+    visit_spline(part.kernel, [&]<class S>(S) { pass<S>(part, Factor::Slope, &q, f, &sums); });
+}
+
+void CornerMap::add_through(int body,
+                            const Field& q,
+                            const AtMovedSlaves& f,
+                            Field& sums) const {
     const Part& part = parts_[body];
     visit_spline(part.kernel, [&]<class S>(S) { pass<S>(part, Factor::Slope, &q, f, &sums); });
 }

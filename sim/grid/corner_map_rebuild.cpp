@@ -75,6 +75,13 @@ void CornerMap::rebuild_body(const Field& corners, const BodyRange& body, int in
     Part part;
     part.kernel = body.kernel;
     part.cell_size = body.cell_size;
+    const auto first_free = [&](int corner) {
+        return static_cast<int>(
+            std::lower_bound(free_corner_.begin(), free_corner_.end(), corner)
+            - free_corner_.begin());
+    };
+    part.first_free = first_free(body.begin);
+    part.last_free = first_free(body.end);
     part.first_group = part.last_group = static_cast<int>(groups_.size());
     part.first_node = part.last_node = n_nodes_;
     part.first_entry = group_nodes_.size();

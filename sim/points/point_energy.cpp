@@ -92,19 +92,16 @@ PointsOfSlaves PointEnergy::slaves() const {
     return {map_.slave_corner().data(), first_corner_, law_.data(), models_, start_.F.data()};
 }
 
-template <class Deform>
-double PointEnergy::add_stresses(const Field& q, const Deform& deform, Field& gradient) {
-    const PointsOfSlaves points = slaves();
+void PointEnergy::begin_stresses() {
     chunk_energy_.assign(map_.slaves_of(body_).chunk, 0);
-    map_.add_through(
-        body_,
-        q,
-        [&](const CornerMap::Slaves& at, Gradient* values) {
-            deform(points, at, values);
-            chunk_energy_[at.chunk] =
-                take_stresses(points, {at.begin, at.end}, F_next_.data(), values);
-        },
-        gradient);
+}
+
+void PointEnergy::take_stresses_of(const CornerMap::Slaves& at, Gradient* values) {
+    chunk_energy_[at.chunk] =
+        take_stresses(slaves(), {at.begin, at.end}, F_next_.data(), values);
+}
+
+double PointEnergy::sum_of_energies() const {
     double energy = 0;
     for (const double part : chunk_energy_)
         energy += part;
@@ -112,22 +109,29 @@ double PointEnergy::add_stresses(const Field& q, const Deform& deform, Field& gr
 }
 
 double PointEnergy::add_gradient(const Field& q, double dt, Field& gradient) {
-    return add_stresses(
-        q,
-        [&](const PointsOfSlaves& points, const CornerMap::Slaves& at, const Gradient* values) {
-            deform(points, {at.begin, at.end}, dt, values, F_next_.data());
-        },
-        gradient);
+    begin_stresses();
+    const CornerMap::AtSlaves take = [&](const CornerMap::Slaves& at, Gradient* values) {
+        deform(slaves(), {at.begin, at.end}, dt, values, F_next_.data());
+        take_stresses_of(at, values);
+    };
+    map_.add_through(body_, q, take, gradient);
+    return sum_of_energies();
 }
 
-double PointEnergy::end_drift(const Field& way, Field& gradient) {
-    return add_stresses(
-        way,
-        [&](const PointsOfSlaves& points, const CornerMap::Slaves& at, const Gradient* values) {
-            deform(points, {at.begin, at.end}, 1, values, F_next_.data());
+double PointEnergy::end_drift(const Field& way, const Field& x_n, Field& x, Field& gradient) {
+    begin_stresses();
+    const CornerMap::AtMovedSlaves take =
+        [&](const CornerMap::Slaves& at, const Vec3p* gone, Gradient* values) {
+            for (int s = at.begin; s < at.end; ++s) {
+                const int c = map_.slave_corner()[s];
+                x[c] = x_n[c] + gone[s - at.begin];
+            }
+            deform(slaves(), {at.begin, at.end}, 1, values, F_next_.data());
             yield(at);
-        },
-        gradient);
+            take_stresses_of(at, values);
+        };
+    map_.add_through(body_, way, take, gradient);
+    return sum_of_energies();
 }
 
 void PointEnergy::add_start_gradient(Field& gradient) {
@@ -157,14 +161,11 @@ void PointEnergy::linearize(const Field& q, double dt, bool project) {
 
 void PointEnergy::add_product(const Field& u, Field& product) const {
     const CornerMap::Slaves all = map_.slaves_of(body_);
-    map_.add_through(
-        body_,
-        u,
-        [&](const CornerMap::Slaves& at, Gradient* values) {
-            const int b = first_batch(all, at);
-            multiply(&stiffness_[b], &weight_[b], {at.begin, at.end}, values);
-        },
-        product);
+    const CornerMap::AtSlaves take = [&](const CornerMap::Slaves& at, Gradient* values) {
+        const int b = first_batch(all, at);
+        multiply(&stiffness_[b], &weight_[b], {at.begin, at.end}, values);
+    };
+    map_.add_through(body_, u, take, product);
 }
 
 void PointEnergy::add_diagonal(Field& diagonal) const {

@@ -36,9 +36,9 @@ class PointEnergy : public GridEnergy {
     /// Adds ∂Φ/∂u at the start of the step, where nothing has moved, to `gradient` (#dofs) [N].
     void add_start_gradient(Field& gradient);
 
-    /// As add_gradient() where a drift ends for good: snow yields there before stresses are taken, and Φ is that of what
-    /// is left.   way: of the nodes since the step began (#dofs) [m]
-    double end_drift(const Field& way, Field& gradient);
+    /// As add_gradient() where a drift ends for good: points come to x = x_n + T way, snow yields there before stresses are
+    /// taken, and Φ is that of what is left.   way: of the nodes since the step began at x_n (#dofs); x_n, x (#C) [m]
+    double end_drift(const Field& way, const Field& x_n, Field& x, Field& gradient);
 
     /// Moves F by the velocities of the step, and lets snow yield.
     void advance(const Field& q, double dt);
@@ -67,8 +67,9 @@ class PointEnergy : public GridEnergy {
     PointsOfSlaves slaves() const;
     void harden(int p);
     void yield(const CornerMap::Slaves& at);
-    template <class Deform>
-    double add_stresses(const Field& q, const Deform& deform, Field& gradient);
+    void begin_stresses();
+    void take_stresses_of(const CornerMap::Slaves& at, Gradient* values);
+    double sum_of_energies() const;
 
     const CornerMap& map_;
     int body_, first_corner_;

@@ -171,10 +171,30 @@ TEST_CASE("corners move by what T gives them, wherever they come from") {
         for (int c = 0; c < s.n_corners(); ++c)
             REQUIRE(sim::unpadded(x[c] - (s.corners[c] + dt * u[c])).norm()
                     <= 1e-15 * (2 + offset.norm()));
-        Field x_too, u_too;
-        s.map.move(s.corners, dt, q, x_too, u_too);
-        CHECK(tests::largest_difference(x_too, x) <= 1e-15 * (2 + offset.norm()));
-        CHECK(tests::largest_difference(u_too, u) <= 1e-15);
+    }
+}
+
+TEST_CASE("bodies that are moved by themselves move as all do together") {
+    tests::Random random(6);
+    const double dt = 0.25;
+    const Sample s = sample(offsets[1]);
+    const Field q = tests::random_field(s.map.n_dofs(), random);
+    Field x, u(s.n_corners());
+    s.map.move(s.corners, dt, q, x);
+    s.map.apply(q, u);
+    for (const std::vector<int>& moving : {std::vector{0}, {1}, {0, 1}}) {
+        Field expected = s.corners, expected_u(s.n_corners());
+        for (const int b : moving)
+            for (int c = s.bodies[b].begin; c < s.bodies[b].end; ++c) {
+                expected[c] = x[c];
+                expected_u[c] = u[c];
+            }
+        Field moved = s.corners, with_u = s.corners, moved_u(s.n_corners());
+        s.map.move_bodies(moving, s.corners, dt, q, moved);
+        s.map.move_bodies(moving, s.corners, dt, q, with_u, &moved_u);
+        CHECK(tests::largest_difference(moved, expected) <= 1e-14);
+        CHECK(tests::largest_difference(with_u, expected) <= 1e-14);
+        CHECK(tests::largest_difference(moved_u, expected_u) <= 1e-14);
     }
 }
 

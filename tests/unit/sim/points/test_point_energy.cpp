@@ -125,7 +125,10 @@ TEST_CASE("snow yields at the end of each drift, and what has yielded moves on f
     int n_yielded = 0;
     for (const Field& way : {first, both}) {
         Field gradient(way.size());
-        const double value = sample.energy->end_drift(way, gradient);
+        Field x(sample.x.size()), moved;
+        const double value = sample.energy->end_drift(way, sample.x, x, gradient);
+        sample.map.move(sample.x, 1, way, moved);
+        CHECK(tests::largest_difference(x, moved) < 1e-15);
         const std::vector<Mat3> D = gradients(sample, way);
         double energy = 0;
         for (int p = 0; p < sample.points.size(); ++p) {
