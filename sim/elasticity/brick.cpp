@@ -1,14 +1,12 @@
 #include "sim/elasticity/brick.h"
 
+#include "sim/base/lane_clones.h"
 #include "sim/materials/fixed_corotated.h"
 #include "sim/materials/neo_hookean.h"
 #include "sim/materials/stable_neo_hookean.h"
 
 #include <algorithm>
 #include <utility>
-
-// Compiled for two instruction sets and chosen at run time; both do the same operations in every lane.
-#define SUPPLE_LANES __attribute__((target_clones("arch=x86-64-v4", "default")))
 
 namespace sim {
 

@@ -1,5 +1,6 @@
 #include "sim/elasticity/fbar.h"
 
+#include "sim/base/lane_clones.h"
 #include "sim/materials/law.h"
 #include "sim/materials/packed_stiffness.h"
 
@@ -8,8 +9,6 @@
 #include <cstring>
 #include <limits>
 
-// Compiled for two instruction sets and chosen at run time; both do the same operations in every lane.
-#define SUPPLE_LANES __attribute__((target_clones("arch=x86-64-v4", "default")))
 #define INLINED __attribute__((always_inline))
 
 namespace sim {

@@ -1,7 +1,7 @@
 // Arithmetic that reads the same for one element (double) and for several side by side (Lanes, GaussLanes).
 //
 // Everything here and in the laws is inlined into its caller, so that a caller compiled for several
-// instruction sets, [[gnu::target_clones("arch=x86-64-v4", "default")]], gets each of them whole.
+// instruction sets, SUPPLE_LANES, gets each of them whole.
 // There are no comparisons of lanes: GCC 12 splits those of 64-byte vectors into scalars on AVX2.
 #pragma once
 

@@ -1,15 +1,14 @@
 #include "sim/points/plasticity.h"
 
+#include "sim/base/lane_clones.h"
 #include "sim/materials/lane_svd.h"
 #include "sim/materials/polar.h"
 #include "sim/materials/signed_svd.h"
 #include "sim/points/lane_rows.h"
+#include "sim/points/stretch_limits.h"
 
 #include <algorithm>
 #include <cmath>
-
-// Compiled for two instruction sets and chosen at run time; both do the same operations in every lane.
-#define SUPPLE_LANES __attribute__((target_clones("arch=x86-64-v4", "default")))
 
 namespace sim {
 
@@ -18,34 +17,6 @@ namespace {
 constexpr double least_stretch = 0.1;  // that is far enough from zero to divide by
 constexpr double flat = 1e-9;  // stretch that is divided by in its place where there is none
 constexpr double most_defect = 1e-28;  // squared cosine of an angle between singular vectors
-
-template <class S>
-[[gnu::always_inline]] inline S smaller(const S& a, const S& b) {
-    return select_positive(S(b - a), a, b);
-}
-
-/// Positive where the symmetric A has positive eigenvalues alone: the first pivot of its LDLᵀ that is not positive, else
-/// the last. Elimination without exchanges is stable there: it is wrong by no more than the rounding of A.
-template <class S>
-[[gnu::always_inline]] inline S positive_definite(const Matrix3<S>& A) {
-    const S first = A.m[0], x = A.m[1] / first, y = A.m[2] / first;
-    const S second = A.m[4] - x * A.m[1], yz = A.m[5] - x * A.m[2];
-    const S third = A.m[8] - y * A.m[2] - yz * yz / second;
-    return select_positive(first, select_positive(second, third, second), first);
-}
-
-/// Positive where no stretch of F is outside of [low, high] and F keeps its side: low² 1 < FᵀF < high² 1.
-template <class S>
-[[gnu::always_inline]] inline S inside(const Matrix3<S>& F, const S& low, const S& high) {
-    Matrix3<S> above = gram(F), below;
-    for (int k = 0; k < 9; ++k)
-        below.m[k] = -above.m[k];
-    for (int k = 0; k < 9; k += 4) {
-        above.m[k] -= low * low;
-        below.m[k] += high * high;
-    }
-    return smaller(smaller(positive_definite(above), positive_definite(below)), determinant(F));
-}
 
 /// Points that yield side by side, and what their stretches are brought into.
 struct YieldingBatch {

@@ -57,6 +57,15 @@ PointEnergy::PointEnergy(const CornerMap& map,
         models_ |= 1u << static_cast<int>(model);
         scale_ += points.volume[p] * (points.lambda[p] + 2 * points.mu[p]);
     }
+    const auto is_snow = [](Model model) { return model == Model::Snow; };
+    if (std::none_of(points.model.begin(), points.model.end(), is_snow))
+        return;
+    for (std::size_t r = 0; r < points.model.size(); ++r) {
+        const SnowOptions& snow = points.snow[r];
+        limits_.push_back(is_snow(points.model[r]) ? StretchLimits{1 - snow.compression_limit,
+                                                                   1 + snow.stretch_limit}
+                                                   : StretchLimits{});
+    }
 }
 
 void PointEnergy::begin_step(const PointState& state) {
@@ -81,24 +90,18 @@ void PointEnergy::yield(const CornerMap::Slaves& at) {
         const int n = std::min(yielding_at_once, at.end - s);
         for (int k = 0; k < n; ++k)
             point[k] = map_.slave_corner()[s + k] - first_corner_;
-        if (sim::yield(
-                points_, point, n, F_next_.data(), start_.F.data(), start_.J_plastic.data()))
-            for (int k = 0; k < n; ++k)
-                harden(point[k]);
+        yield(point, n);
     }
+}
+
+void PointEnergy::yield(const int* point, int n) {
+    if (sim::yield(points_, point, n, F_next_.data(), start_.F.data(), start_.J_plastic.data()))
+        for (int k = 0; k < n; ++k)
+            harden(point[k]);
 }
 
 PointsOfSlaves PointEnergy::slaves() const {
     return {map_.slave_corner().data(), first_corner_, law_.data(), models_, start_.F.data()};
-}
-
-void PointEnergy::begin_stresses() {
-    chunk_energy_.assign(map_.slaves_of(body_).chunk, 0);
-}
-
-void PointEnergy::take_stresses_of(const CornerMap::Slaves& at, Gradient* values) {
-    chunk_energy_[at.chunk] =
-        take_stresses(slaves(), {at.begin, at.end}, F_next_.data(), values);
 }
 
 double PointEnergy::sum_of_energies() const {
@@ -109,26 +112,32 @@ double PointEnergy::sum_of_energies() const {
 }
 
 double PointEnergy::add_gradient(const Field& q, double dt, Field& gradient) {
-    begin_stresses();
+    const PointsOfSlaves points = slaves();
+    chunk_energy_.assign(map_.slaves_of(body_).chunk, 0);
     const CornerMap::AtSlaves take = [&](const CornerMap::Slaves& at, Gradient* values) {
-        deform(slaves(), {at.begin, at.end}, dt, values, F_next_.data());
-        take_stresses_of(at, values);
+        const SlaveRange range{at.begin, at.end};
+        deform(points, range, dt, values, F_next_.data());
+        chunk_energy_[at.chunk] = take_stresses(points, range, F_next_.data(), values);
     };
     map_.add_through(body_, q, take, gradient);
     return sum_of_energies();
 }
 
 double PointEnergy::end_drift(const Field& way, const Field& x_n, Field& x, Field& gradient) {
-    begin_stresses();
+    const PointsOfSlaves points = slaves();
+    const Yielding yielding{limits_.data(),
+                            points_.region.data(),
+                            [&](const int* point, int n) { yield(point, n); }};
+    const Yielding* const yields = limits_.empty() ? nullptr : &yielding;
+    chunk_energy_.assign(map_.slaves_of(body_).chunk, 0);
     const CornerMap::AtMovedSlaves take =
         [&](const CornerMap::Slaves& at, const Vec3p* gone, Gradient* values) {
             for (int s = at.begin; s < at.end; ++s) {
                 const int c = map_.slave_corner()[s];
                 x[c] = x_n[c] + gone[s - at.begin];
             }
-            deform(slaves(), {at.begin, at.end}, 1, values, F_next_.data());
-            yield(at);
-            take_stresses_of(at, values);
+            chunk_energy_[at.chunk] = deform_and_take_stresses(
+                points, {at.begin, at.end}, yields, F_next_.data(), values);
         };
     map_.add_through(body_, way, take, gradient);
     return sum_of_energies();

@@ -67,16 +67,16 @@ class PointEnergy : public GridEnergy {
     PointsOfSlaves slaves() const;
     void harden(int p);
     void yield(const CornerMap::Slaves& at);
-    void begin_stresses();
-    void take_stresses_of(const CornerMap::Slaves& at, Gradient* values);
+    void yield(const int* point, int n);
     double sum_of_energies() const;
 
     const CornerMap& map_;
     int body_, first_corner_;
     double cell_size_;
     const MaterialPoints& points_;
-    std::vector<PointLaw> law_;        // (#P) now
-    unsigned models_ = 0;              // a bit for each of their models
+    std::vector<PointLaw> law_;          // (#P) now
+    unsigned models_ = 0;                // a bit for each of their models
+    std::vector<StretchLimits> limits_;  // (#regions) where any is snow, else empty
     std::vector<double> J_of_moduli_;  // (#P) J_P that they are of: few points yield in a step
     double scale_ = 0;
     // Of the start of the step, from where its motion leads to F_next_: what yields meanwhile yields there, too.

@@ -1,14 +1,12 @@
 #include "sim/points/point_laws.h"
 
+#include "sim/base/lane_clones.h"
 #include "sim/materials/law.h"
 #include "sim/materials/projection.h"
 #include "sim/points/lane_rows.h"
 
 #include <algorithm>
 #include <cstring>
-
-// Compiled for two instruction sets and chosen at run time; both do the same operations in every lane.
-#define SUPPLE_LANES __attribute__((target_clones("arch=x86-64-v4", "default")))
 
 namespace sim {
 
@@ -174,6 +172,23 @@ ALWAYS_INLINE void see_from_gradients(const Matrix3<Lanes>& F, const Lanes* C, F
     }
 }
 
+/// Whether any point of a batch may have left its limits.
+ALWAYS_INLINE bool may_yield(const Yielding& yielding,
+                             const Place& at,
+                             const Matrix3<Lanes>& F) {
+    alignas(64) Lanes low{}, high = uniform<Lanes>(2);
+    for (int l = 0; l < at.n; ++l) {
+        const StretchLimits& limits = yielding.limits[yielding.region[at.point[l]]];
+        low[l] = limits.low;
+        high[l] = limits.high;
+    }
+    const Lanes stays = inside(F, low, high);
+    bool all_stay = true;
+    for (int l = 0; l < lane_count; ++l)
+        all_stay = all_stay && stays[l] > 0;
+    return !all_stay;
+}
+
 /// Ψ and P at F.
 ALWAYS_INLINE Matrix3<Lanes> stresses(const Batch& batch, const Matrix3<Lanes>& F, Lanes& psi) {
     Matrix3<Lanes> P{};
@@ -182,6 +197,29 @@ ALWAYS_INLINE Matrix3<Lanes> stresses(const Batch& batch, const Matrix3<Lanes>& 
     take_law<StableNeoHookean>(batch, Model::StableNeoHookean, F, psi, P);
     take_law<FixedCorotated>(batch, Model::FixedCorotated, F, psi, P);
     return P;
+}
+
+/// Sets `values` to V P F_nᵀ and returns V Ψ.
+ALWAYS_INLINE Lanes take_stresses(const PointsOfSlaves& points,
+                                  const Place& at,
+                                  const Matrix3<Lanes>& F,
+                                  const Matrix3<Lanes>& F_n,
+                                  Gradient* values) {
+    Batch batch;
+    load(points, at, batch);
+    Lanes psi;
+    Matrix3<Lanes> P = stresses(batch, F, psi);
+    for (int k = 0; k < 9; ++k)
+        P.m[k] = batch.volume * P.m[k];
+    store(product_transposed(P, F_n), at.n, values);
+    return batch.volume * psi;
+}
+
+ALWAYS_INLINE double sum_of(const Lanes& lanes) {
+    double sum = 0;
+    for (int l = 0; l < lane_count; ++l)
+        sum += lanes[l];
+    return sum;
 }
 
 }  // namespace
@@ -204,21 +242,35 @@ double take_stresses(const PointsOfSlaves& points,
                      const SlaveRange& range,
                      const Matrix3<double>* F,
                      Gradient* values) {
-    alignas(64) Lanes energy{}, psi;
-    Batch batch;
+    alignas(64) Lanes energy{};
     for (int b = 0; b < range.n_batches(); ++b) {
         const Place at(points, range, b);
-        load(points, at, batch);
-        Matrix3<Lanes> P = stresses(batch, load(F, at), psi);
-        for (int k = 0; k < 9; ++k)
-            P.m[k] = batch.volume * P.m[k];
-        store(product_transposed(P, load(points.F_n, at)), at.n, values + lane_count * b);
-        energy += batch.volume * psi;
+        energy += take_stresses(
+            points, at, load(F, at), load(points.F_n, at), values + lane_count * b);
     }
-    double sum = 0;
-    for (int l = 0; l < lane_count; ++l)
-        sum += energy[l];
-    return sum;
+    return sum_of(energy);
+}
+
+SUPPLE_LANES
+double deform_and_take_stresses(const PointsOfSlaves& points,
+                                const SlaveRange& range,
+                                const Yielding* yielding,
+                                Matrix3<double>* F,
+                                Gradient* values) {
+    alignas(64) Lanes energy{};
+    for (int b = 0; b < range.n_batches(); ++b) {
+        const Place at(points, range, b);
+        Gradient* const here = values + lane_count * b;
+        Matrix3<Lanes> F_n = load(points.F_n, at), F_there = moved(F_n, load(here, at.n), 1);
+        store(F_there, at, F);
+        if (yielding != nullptr && may_yield(*yielding, at, F_there)) {
+            yielding->yield(at.point, at.n);
+            F_there = load(F, at);
+            F_n = load(points.F_n, at);
+        }
+        energy += take_stresses(points, at, F_there, F_n, here);
+    }
+    return sum_of(energy);
 }
 
 SUPPLE_LANES

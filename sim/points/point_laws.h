@@ -3,7 +3,9 @@
 
 #include "sim/grid/corner_map.h"
 #include "sim/materials/lanes.h"
+#include "sim/points/stretch_limits.h"
 
+#include <functional>
 #include <vector>
 
 namespace sim {
@@ -36,6 +38,13 @@ struct PointStiffness {
     FloatLanes A[45];  // upper triangle, see packed()
 };
 
+/// Which points of a body yield. Called for those of a batch of which any may have left its limits.
+struct Yielding {
+    const StretchLimits* limits = nullptr;  // (#regions)
+    const int* region = nullptr;            // (#P)
+    std::function<void(const int* point, int n)> yield;
+};
+
 /// F = (1 + dt ∇v) F_n from the gradients in `values`.   F (#P)
 void deform(const PointsOfSlaves& points,
             const SlaveRange& range,
@@ -48,6 +57,14 @@ double take_stresses(const PointsOfSlaves& points,
                      const SlaveRange& range,
                      const Matrix3<double>* F,
                      Gradient* values);
+
+/// Both for F = (1 + ∇u) F_n, where points yield in between if `yielding` is not null: F, F_n and laws are then those that
+/// `yield` has left.
+double deform_and_take_stresses(const PointsOfSlaves& points,
+                                const SlaveRange& range,
+                                const Yielding* yielding,
+                                Matrix3<double>* F,
+                                Gradient* values);
 
 /// Stiffness at F = (1 + dt ∇v) F_n of each batch, and V mu of its points [J]; `project`: positive semi-definite.
 void take_stiffness(const PointsOfSlaves& points,
