@@ -6,6 +6,8 @@
 #include "sim/materials/stable_neo_hookean.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <cstring>
 #include <utility>
 
 namespace sim {
@@ -28,29 +30,68 @@ ALWAYS_INLINE void times(const Body& body) {
     unroll(body, std::make_integer_sequence<int, n>{});
 }
 
-ALWAYS_INLINE void add_to(double* p, const Lanes& v) {
-    store_lanes(load_lanes(p) + v, p);
+/// As many as two batches have.
+using Pair = GaussLanes;
+
+/// L is Lanes, for one batch, or Pair, for two that continue each other.
+template <class L>
+constexpr int batches = sizeof(L) / sizeof(Lanes);
+
+template <class L>
+ALWAYS_INLINE L load_from(const double* p) {
+    L lanes;
+    std::memcpy(&lanes, p, sizeof lanes);
+    return lanes;
+}
+
+/// Of batch b and what follows.
+template <class L>
+ALWAYS_INLINE L load_from(const std::vector<Lanes>& of_batches, std::size_t b) {
+    L lanes;
+    std::memcpy(&lanes, &of_batches[b], sizeof lanes);
+    return lanes;
+}
+
+template <class L>
+ALWAYS_INLINE void add_to(double* p, const L& v) {
+    alignas(sizeof(L)) const L sum = load_from<L>(p) + v;
+    std::memcpy(p, &sum, sizeof sum);
+}
+
+ALWAYS_INLINE Lanes first_of(const Lanes& v) {
+    return v;
+}
+
+ALWAYS_INLINE Lanes first_of(const Pair& v) {
+    return __builtin_shufflevector(v, v, 0, 1, 2, 3);
+}
+
+ALWAYS_INLINE Lanes second_of(const Pair& v) {
+    return __builtin_shufflevector(v, v, 4, 5, 6, 7);
 }
 
 /// The eight values of one component, at the corners or as coefficients of the modes 1, ξ, η, ξη, ζ, ξζ, ηζ, ξηζ with ξ, η,
 /// ζ = ±1 at the corners, ξ along the rows: of corner values v_a they are h_m = Σ_a ξ_m(a) v_a, so that
 /// v(ξ,η,ζ) = Σ_m h_m/8 ξ_m (the Walsh-Hadamard transform of size 8).
-struct alignas(sizeof(Lanes)) Eight {
-    Lanes v[8];
+template <class L>
+struct alignas(sizeof(L)) Eight {
+    L v[8];
 };
 
 /// The same across the rows alone, for each place along them: 1, η, ζ, ηζ.
-struct alignas(sizeof(Lanes)) Four {
-    Lanes v[4];
+template <class L>
+struct alignas(sizeof(L)) Four {
+    L v[4];
 };
 
 /// Values in the four rows -> coefficients.
-ALWAYS_INLINE void to_modes(Four& e) {
+template <class L>
+ALWAYS_INLINE void to_modes(Four<L>& e) {
     times<2>([&](auto axis) INLINED {
         times<4>([&](auto r) INLINED {
             constexpr int bit = 1 << axis;
             if constexpr (!(r & bit)) {
-                const Lanes low = e.v[r], high = e.v[r | bit];
+                const L low = e.v[r], high = e.v[r | bit];
                 e.v[r] = low + high;
                 e.v[r | bit] = high - low;
             }
@@ -59,12 +100,13 @@ ALWAYS_INLINE void to_modes(Four& e) {
 }
 
 /// The transpose of to_modes.
-ALWAYS_INLINE void from_modes(Four& e) {
+template <class L>
+ALWAYS_INLINE void from_modes(Four<L>& e) {
     times<2>([&](auto axis) INLINED {
         times<4>([&](auto r) INLINED {
             constexpr int bit = 1 << axis;
             if constexpr (!(r & bit)) {
-                const Lanes low = e.v[r], high = e.v[r | bit];
+                const L low = e.v[r], high = e.v[r | bit];
                 e.v[r] = low - high;
                 e.v[r | bit] = low + high;
             }
@@ -82,29 +124,45 @@ ALWAYS_INLINE Lanes followed_by(const Lanes& v, const Lanes& next) {
     return __builtin_shufflevector(v, next, 1, 2, 3, 4);
 }
 
+ALWAYS_INLINE Pair followed_by(const Pair& v, const Pair& next) {
+    return __builtin_shufflevector(v, next, 1, 2, 3, 4, 5, 6, 7, 8);
+}
+
 /// And what comes before it: of the first one that is the last lane of `before`.
 ALWAYS_INLINE Lanes preceded_by(const Lanes& before, const Lanes& v) {
     return __builtin_shufflevector(before, v, 3, 4, 5, 6);
 }
 
+ALWAYS_INLINE Pair preceded_by(const Pair& before, const Pair& v) {
+    return __builtin_shufflevector(before, v, 7, 8, 9, 10, 11, 12, 13, 14);
+}
+
 /// Modes at the corners of a brick, batch by batch. As a corner is the right one of a domain and the left one of the next, what
 /// a batch finds across the rows at its end begins the next one where that continues it.
+template <class L>
 class ModesOfCorners {
   public:
     ALWAYS_INLINE ModesOfCorners(const Brick& brick, const BrickFields& fields)
         : brick_(brick), fields_(fields) {}
 
+    /// Goes on where another has come to.
+    ALWAYS_INLINE void go_on_from(const ModesOfCorners<Pair>& before) {
+        times<3>([&](auto i) INLINED {
+            times<4>([&](auto r) INLINED { next_[i].v[r] = first_of(before.next_[i].v[r]); });
+        });
+    }
+
     /// Of batch b, which must follow the one that was asked for before unless it continues none.
-    ALWAYS_INLINE void load(std::size_t b, Eight h[3]) {
+    ALWAYS_INLINE void load(std::size_t b, Eight<L> h[3]) {
         const Batch& batch = brick_.batch[b];
         if (!batch.continues)
             load_across(batch, 0, next_);
-        Four here[3];
+        Four<L> here[3];
         times<3>([&](auto i) INLINED { here[i] = next_[i]; });
-        load_across(batch, lane_count, next_);
+        load_across(batch, lane_count * batches<L>, next_);
         times<3>([&](auto i) INLINED {
             times<4>([&](auto r) INLINED {
-                const Lanes left = here[i].v[r], right = followed_by(left, next_[i].v[r]);
+                const L left = here[i].v[r], right = followed_by(left, next_[i].v[r]);
                 h[i].v[2 * r] = left + right;
                 h[i].v[2 * r + 1] = right - left;
             });
@@ -112,10 +170,13 @@ class ModesOfCorners {
     }
 
   private:
-    ALWAYS_INLINE void load_across(const Batch& batch, int ahead, Four across[3]) const {
+    template <class>
+    friend class ModesOfCorners;
+
+    ALWAYS_INLINE void load_across(const Batch& batch, int ahead, Four<L> across[3]) const {
         times<3>([&](auto i) INLINED {
             times<4>([&](auto r) INLINED {
-                across[i].v[r] = load_lanes(fields_.in[i] + batch.row[r] + ahead);
+                across[i].v[r] = load_from<L>(fields_.in[i] + batch.row[r] + ahead);
             });
             to_modes(across[i]);
         });
@@ -123,44 +184,57 @@ class ModesOfCorners {
 
     const Brick& brick_;
     const BrickFields& fields_;
-    Four next_[3] = {};
+    Four<L> next_[3] = {};
 };
 
 /// Sums at the corners of a brick of what modes give to them, batch by batch.
+template <class L>
 class SumsAtCorners {
   public:
     ALWAYS_INLINE SumsAtCorners(const Brick& brick, const BrickFields& fields)
         : brick_(brick), fields_(fields) {}
 
-    /// Adds ∂/∂v_a = Σ_m ξ_m(a) ∂/∂h_m of batch b, the next one.
-    ALWAYS_INLINE void add(std::size_t b, const Eight g[3]) {
-        const Batch& batch = brick_.batch[b];
-        Four right[3];
+    /// Goes on where another has come to.
+    ALWAYS_INLINE void go_on_from(const SumsAtCorners<Pair>& before) {
         times<3>([&](auto i) INLINED {
-            Four sum;
+            times<4>([&](auto r)
+                         INLINED { before_[i].v[r] = second_of(before.before_[i].v[r]); });
+        });
+    }
+
+    /// Adds ∂/∂v_a = Σ_m ξ_m(a) ∂/∂h_m of batch b, the next one.
+    ALWAYS_INLINE void add(std::size_t b, const Eight<L> g[3]) {
+        const Batch& batch = brick_.batch[b];
+        Four<L> right[3];
+        times<3>([&](auto i) INLINED {
+            Four<L> sum;
             times<4>([&](auto r) INLINED {
-                const Lanes low = g[i].v[2 * r], high = g[i].v[2 * r + 1];
+                const L low = g[i].v[2 * r], high = g[i].v[2 * r + 1];
                 right[i].v[r] = low + high;
                 sum.v[r] = (low - high) + preceded_by(before_[i].v[r], right[i].v[r]);
             });
             add_to_rows(batch, 0, i, sum);
         });
-        const bool is_last = b + 1 == brick_.batch.size() || !brick_.batch[b + 1].continues;
+        const std::size_t next = b + batches<L>;
+        const bool is_last = next == brick_.batch.size() || !brick_.batch[next].continues;
         times<3>([&](auto i) INLINED {
             if (is_last) {
-                Four sum;
+                Four<L> sum;
                 times<4>([&](auto r) INLINED {
-                    sum.v[r] = preceded_by(right[i].v[r], Lanes{});
-                    right[i].v[r] = Lanes{};
+                    sum.v[r] = preceded_by(right[i].v[r], L{});
+                    right[i].v[r] = L{};
                 });
-                add_to_rows(batch, lane_count, i, sum);
+                add_to_rows(batch, lane_count * batches<L>, i, sum);
             }
             before_[i] = right[i];
         });
     }
 
   private:
-    ALWAYS_INLINE void add_to_rows(const Batch& batch, int ahead, int i, Four& sum) const {
+    template <class>
+    friend class SumsAtCorners;
+
+    ALWAYS_INLINE void add_to_rows(const Batch& batch, int ahead, int i, Four<L>& sum) const {
         from_modes(sum);
         times<4>([&](auto r)
                      INLINED { add_to(fields_.out[i] + batch.row[r] + ahead, sum.v[r]); });
@@ -169,26 +243,26 @@ class SumsAtCorners {
     const Brick& brick_;
     const BrickFields& fields_;
     // Of the right corners of the batch before, where this one continues it.
-    Four before_[3] = {};
+    Four<L> before_[3] = {};
 };
 
 /// F of a batch; the identity in empty slots. ∂x/∂X_j = h_j / (4 s).
-ALWAYS_INLINE Matrix3<Lanes> gradient_of_modes(const Eight h[3],
-                                               const Lanes& volume,
-                                               double edge) {
-    Matrix3<Lanes> F;
+template <class L>
+ALWAYS_INLINE Matrix3<L> gradient_of_modes(const Eight<L> h[3], const L& volume, double edge) {
+    Matrix3<L> F;
     times<9>([&](auto k) INLINED {
-        const Lanes entry = h[k % 3].v[linear_mode[k / 3]] * (1 / (4 * edge));
-        F.m[k] = select_positive(volume, entry, uniform<Lanes>(k % 4 == 0 ? 1 : 0));
+        alignas(sizeof(L)) const L entry = h[k % 3].v[linear_mode[k / 3]] * (1 / (4 * edge));
+        F.m[k] = select_positive(volume, entry, uniform<L>(k % 4 == 0 ? 1 : 0));
     });
     return F;
 }
 
 /// ∂E_hg/∂h_m = k h_m for bilinear modes, k/2 h_m for the trilinear one, and 0 for the mean; returns E_hg.
-ALWAYS_INLINE Lanes hourglass(const Lanes& k, const Eight h[3], Eight g[3]) {
-    Lanes energy{};
+template <class L>
+ALWAYS_INLINE L hourglass(const L& k, const Eight<L> h[3], Eight<L> g[3]) {
+    alignas(sizeof(L)) L energy{};
     times<3>([&](auto i) INLINED {
-        g[i].v[0] = Lanes{};
+        g[i].v[0] = L{};
         times<3>([&](auto m) INLINED {
             constexpr int mode = bilinear_mode[m];
             g[i].v[mode] = k * h[i].v[mode];
@@ -201,32 +275,86 @@ ALWAYS_INLINE Lanes hourglass(const Lanes& k, const Eight h[3], Eight g[3]) {
 }
 
 /// Positive in the slots of a law.
-ALWAYS_INLINE Lanes where_law(const Lanes& law, Model model) {
-    const Lanes difference = law - static_cast<double>(model);
+template <class L>
+ALWAYS_INLINE L where_law(const L& law, Model model) {
+    alignas(sizeof(L)) const L difference = law - static_cast<double>(model);
     return 0.5 - difference * difference;
 }
 
-template <class Law>
+template <class L>
+ALWAYS_INLINE unsigned laws_of(const Brick& brick, std::size_t b) {
+    return batches<L> == 1 ? brick.laws[b] : brick.laws[b] | brick.laws[b + 1];
+}
+
+template <class Law, class L>
 ALWAYS_INLINE void take_law(const Brick& brick,
-                            int b,
+                            std::size_t b,
                             Model model,
-                            const Matrix3<Lanes>& F,
-                            Lanes& psi,
-                            Matrix3<Lanes>& P) {
-    const unsigned bit = 1u << static_cast<int>(model);
-    if (!(brick.laws[b] & bit))
+                            const Matrix3<L>& F,
+                            L& psi,
+                            Matrix3<L>& P) {
+    const unsigned bit = 1u << static_cast<int>(model), laws = laws_of<L>(brick, b);
+    if (!(laws & bit))
         return;
-    Matrix3<Lanes> P_law;
-    const Lanes psi_law = Law::energy_and_first_piola(F, brick.mu[b], brick.lambda[b], P_law);
-    if (brick.laws[b] == bit) {
+    Matrix3<L> P_law;
+    alignas(sizeof(L)) const L psi_law = Law::energy_and_first_piola(
+        F, load_from<L>(brick.mu, b), load_from<L>(brick.lambda, b), P_law);
+    if (laws == bit) {
         psi = psi_law;
         P = P_law;
         return;
     }
-    const Lanes is_law = where_law(brick.law[b], model);
+    alignas(sizeof(L)) const L is_law = where_law(load_from<L>(brick.law, b), model);
     psi = select_positive(is_law, psi_law, psi);
     for (int k = 0; k < 9; ++k)
         P.m[k] = select_positive(is_law, P_law.m[k], P.m[k]);
+}
+
+/// Adds the gradient of batch b, or of two, and returns their energies.
+template <class L>
+ALWAYS_INLINE L take_gradient(const Brick& brick,
+                              std::size_t b,
+                              double edge,
+                              ModesOfCorners<L>& modes,
+                              SumsAtCorners<L>& sums) {
+    Eight<L> h[3], g[3];
+    modes.load(b, h);
+    alignas(sizeof(L)) const L volume = load_from<L>(brick.volume, b);
+    const Matrix3<L> F = gradient_of_modes(h, volume, edge);
+
+    alignas(sizeof(L)) L psi{};
+    Matrix3<L> P{};
+    take_law<NeoHookean>(brick, b, Model::NeoHookean, F, psi, P);
+    take_law<StableNeoHookean>(brick, b, Model::StableNeoHookean, F, psi, P);
+    take_law<FixedCorotated>(brick, b, Model::FixedCorotated, F, psi, P);
+
+    alignas(sizeof(L)) const L energy =
+        volume * psi + hourglass(load_from<L>(brick.hourglass, b), h, g);
+    alignas(sizeof(L)) const L scale = volume * (1 / (4 * edge));
+    times<9>([&](auto k) INLINED { g[k % 3].v[linear_mode[k / 3]] = scale * P.m[k]; });
+    sums.add(b, g);
+    return energy;
+}
+
+/// Whether two batches at once give the same to the last bit: no row of the first shares places with another row of the second,
+/// where sums would come in another order, and no law iterates until all its lanes have settled.
+bool may_pair(const Brick& brick, std::size_t b) {
+    if (laws_of<Pair>(brick, b) & 1u << static_cast<int>(Model::FixedCorotated))
+        return false;
+    const std::array<int, 4>& row = brick.batch[b].row;
+    for (int r = 0; r < 4; ++r)
+        for (int other = 0; other < r; ++other)
+            if (std::abs(row[r] - row[other]) < 2 * lane_count)
+                return false;
+    return true;
+}
+
+/// Where the row of batches that begins with b ends.
+std::size_t end_of_row(const Brick& brick, std::size_t b) {
+    do
+        ++b;
+    while (b < brick.batch.size() && brick.batch[b].continues);
+    return b;
 }
 
 template <class Law>
@@ -266,26 +394,35 @@ ALWAYS_INLINE void take_wave_modulus(
 
 }  // namespace
 
+bool has_pair_registers() {
+    static const bool has = __builtin_cpu_supports("avx512f");
+    return has;
+}
+
 SUPPLE_LANES
-double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fields) {
-    Lanes energy{};
-    ModesOfCorners modes(brick, fields);
-    SumsAtCorners sums(brick, fields);
-    for (std::size_t b = 0; b < brick.batch.size(); ++b) {
-        Eight h[3], g[3];
-        modes.load(b, h);
-        const Matrix3<Lanes> F = gradient_of_modes(h, brick.volume[b], edge);
-
-        Lanes psi{};
-        Matrix3<Lanes> P{};
-        take_law<NeoHookean>(brick, b, Model::NeoHookean, F, psi, P);
-        take_law<StableNeoHookean>(brick, b, Model::StableNeoHookean, F, psi, P);
-        take_law<FixedCorotated>(brick, b, Model::FixedCorotated, F, psi, P);
-
-        energy += brick.volume[b] * psi + hourglass(brick.hourglass[b], h, g);
-        const Lanes scale = brick.volume[b] * (1 / (4 * edge));
-        times<9>([&](auto k) INLINED { g[k % 3].v[linear_mode[k / 3]] = scale * P.m[k]; });
-        sums.add(b, g);
+double add_brick_gradient(const Brick& brick,
+                          double edge,
+                          const BrickFields& fields,
+                          bool takes_pairs) {
+    alignas(64) Lanes energy{};
+    ModesOfCorners<Lanes> modes(brick, fields);
+    SumsAtCorners<Lanes> sums(brick, fields);
+    for (std::size_t b = 0, end = 0; b < brick.batch.size(); b = end) {
+        end = end_of_row(brick, b);
+        if (takes_pairs && end - b > 1 && may_pair(brick, b)) {
+            ModesOfCorners<Pair> modes_of_pairs(brick, fields);
+            SumsAtCorners<Pair> sums_of_pairs(brick, fields);
+            for (; end - b > 1 && may_pair(brick, b); b += 2) {
+                alignas(64) const Pair both =
+                    take_gradient(brick, b, edge, modes_of_pairs, sums_of_pairs);
+                energy += first_of(both);
+                energy += second_of(both);
+            }
+            modes.go_on_from(modes_of_pairs);
+            sums.go_on_from(sums_of_pairs);
+        }
+        for (; b < end; ++b)
+            energy += take_gradient(brick, b, edge, modes, sums);
     }
     double sum = 0;
     for (int l = 0; l < lane_count; ++l)
@@ -296,9 +433,9 @@ double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fi
 SUPPLE_LANES
 double brick_stiffening(const Brick& brick, double edge, const BrickFields& fields) {
     double most = 1;
-    ModesOfCorners modes(brick, fields);
+    ModesOfCorners<Lanes> modes(brick, fields);
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
-        Eight h[3];
+        Eight<Lanes> h[3];
         modes.load(b, h);
         const Matrix3<Lanes> F = gradient_of_modes(h, brick.volume[b], edge);
         Lanes modulus{};
@@ -312,9 +449,9 @@ double brick_stiffening(const Brick& brick, double edge, const BrickFields& fiel
 
 SUPPLE_LANES
 void linearize_brick(Brick& brick, double edge, const BrickFields& fields) {
-    ModesOfCorners modes(brick, fields);
+    ModesOfCorners<Lanes> modes(brick, fields);
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
-        Eight h[3];
+        Eight<Lanes> h[3];
         modes.load(b, h);
         const Matrix3<Lanes> F = gradient_of_modes(h, brick.volume[b], edge);
         FloatLanes* A = &brick.stiffness[45 * b];
@@ -326,12 +463,12 @@ void linearize_brick(Brick& brick, double edge, const BrickFields& fields) {
 
 SUPPLE_LANES
 void add_brick_product(const Brick& brick, double edge, const BrickFields& fields) {
-    ModesOfCorners modes(brick, fields);
-    SumsAtCorners sums(brick, fields);
+    ModesOfCorners<Lanes> modes(brick, fields);
+    SumsAtCorners<Lanes> sums(brick, fields);
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
         // 1/(4s) from the modes to F, and 1/(4s) back
         const Lanes scale = brick.weight[b] * (1 / (16 * edge * edge));
-        Eight h[3], g[3];
+        Eight<Lanes> h[3], g[3];
         modes.load(b, h);
         Matrix3<Lanes> dF, dP{};
         times<9>([&](auto k) INLINED { dF.m[k] = scale * h[k % 3].v[linear_mode[k / 3]]; });
@@ -359,9 +496,9 @@ void add_brick_diagonal(const Brick& brick, double edge, const BrickFields& fiel
     // Of K_aa = Σ_jk b_j b_k V A_(ij)(ik) with b = (±1, ±1, ±1)/(4s) the terms j ≠ k change sign from one domain
     // around a corner to the next; the hourglass modes add three bilinear terms k and one trilinear k/2.
     constexpr int packed_diagonal[9] = {0, 9, 17, 24, 30, 35, 39, 42, 44};
-    SumsAtCorners sums(brick, fields);
+    SumsAtCorners<Lanes> sums(brick, fields);
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
-        Eight g[3] = {};  // the same at all corners
+        Eight<Lanes> g[3] = {};  // the same at all corners
         const FloatLanes* A = &brick.stiffness[45 * b];
         const Lanes scale = brick.weight[b] * (1 / (16 * edge * edge));
         times<3>([&](auto i) INLINED {
@@ -379,9 +516,9 @@ void add_brick_diagonal(const Brick& brick, double edge, const BrickFields& fiel
 
 SUPPLE_LANES
 void find_J(const Brick& brick, double edge, const BrickFields& fields, Lanes* J) {
-    ModesOfCorners modes(brick, fields);
+    ModesOfCorners<Lanes> modes(brick, fields);
     for (std::size_t b = 0; b < brick.batch.size(); ++b) {
-        Eight h[3];
+        Eight<Lanes> h[3];
         modes.load(b, h);
         J[b] = determinant(gradient_of_modes(h, brick.volume[b], edge));
     }

@@ -47,8 +47,15 @@ struct BrickFields {
     double* out[3];       // added to: gradient [N], product K u [N], or the diagonal of K [N/m]
 };
 
-/// ∂E/∂x is added to `out`; returns the energy E = Σ V Ψ(F) + E_hg [J], +infinity where a law forbids the state.
-double add_brick_gradient(const Brick& brick, double edge, const BrickFields& fields);
+/// Whether registers hold two batches: where they do not, halves are spilled all the time.
+bool has_pair_registers();
+
+/// ∂E/∂x is added to `out`; returns the energy E = Σ V Ψ(F) + E_hg [J], +infinity where a law forbids the state. The same to the
+/// last bit whether two batches are taken at a time or one.
+double add_brick_gradient(const Brick& brick,
+                          double edge,
+                          const BrickFields& fields,
+                          bool takes_pairs);
 
 /// ∂P/∂F of every domain at corners `in`, exact (may be indefinite).
 void linearize_brick(Brick& brick, double edge, const BrickFields& fields);

@@ -131,8 +131,8 @@ void Elasticity::fill_brick(const Lattice& lattice,
     Brick brick;
     const BrickLayout layout = best_brick_layout(lattice, domains);
     const int n_places = static_cast<int>(layout.corner.size());
-    // Whole batches, and one after the last.
-    brick.n_local = (n_places / lane_count + 3) * lane_count;
+    // Whole batches, and two after the last.
+    brick.n_local = (n_places / lane_count + 4) * lane_count;
     brick.first_local = static_cast<int>(corner_of_local_.size());
     corner_of_local_.insert(corner_of_local_.end(), layout.corner.begin(), layout.corner.end());
     corner_of_local_.resize(brick.first_local + brick.n_local, -1);
@@ -249,7 +249,7 @@ double Elasticity::for_bricks(const Vec3p* in, Vec3p* out, const Kernel& kernel)
 
 double Elasticity::energy_and_gradient(const Vec3p* x, Vec3p* gradient) {
     return for_bricks(x, gradient, [&](const Brick& brick, const BrickFields& fields) {
-        return add_brick_gradient(brick, edge_, fields);
+        return add_brick_gradient(brick, edge_, fields, takes_pairs);
     });
 }
 

@@ -30,6 +30,9 @@ class Elasticity : public ElasticEnergy {
     double stiffening(const Vec3p* x) const override;
     SmallestJ smallest_J(const Vec3p* x) const override;
 
+    /// Whether gradients are taken of two batches at a time, which changes no bit of them.
+    bool takes_pairs = has_pair_registers();
+
   private:
     /// A brick's corners and sums as its kernels want them, small enough for the second-level cache.
     struct Scratch {

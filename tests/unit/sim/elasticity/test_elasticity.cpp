@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 using sim::Field;
@@ -138,6 +139,33 @@ TEST_CASE(
     const auto [energy_fine, gradient_fine] = errors(1e-3);
     CHECK(std::log2(energy_coarse / energy_fine) == Approx(2).margin(0.1));
     CHECK(std::log2(gradient_coarse / gradient_fine) == Approx(2).margin(0.1));
+}
+
+TEST_CASE("two batches at a time give the gradient and energy of one by one, to the last bit") {
+    // Rows of all lengths; and of bodies as small as batches, which hold several rows each.
+    std::vector<assets::Shape> shapes{{assets::Box{{0, 0, 0}, {1.9, 0.7, 0.7}}},
+                                      {assets::Sphere{{0.4, 0, 0}, 0.87}}};
+    for (int n = 0; n < 64; ++n)
+        shapes.push_back(
+            {assets::Box{{0, 0, 0}, 0.1 * Vec3(1 + n % 4, 1 + n / 4 % 4, 1 + n / 16)}});
+    const auto model = GENERATE(
+        sim::Model::NeoHookean, sim::Model::StableNeoHookean, sim::Model::FixedCorotated);
+    for (const assets::Shape& shape : shapes) {
+        Block sample = block({1, 1, 1});
+        sample.body.source.geometry = shape;
+        sample.body.regions[0].model = model;
+        sample.lattice = sim::make_lattice(sample.body);
+        sim::Elasticity elasticity(sample.lattice, sample.body);
+        const int n = sample.lattice.n_corners();
+        const Field x = sum(corners_at(sample.lattice), 1, random_field(n, 0.01, 5));
+        Field one(n), two(n);
+        elasticity.takes_pairs = false;
+        const double energy = elasticity.energy_and_gradient(x.data(), one.data());
+        elasticity.takes_pairs = true;
+        CHECK(elasticity.energy_and_gradient(x.data(), two.data()) == energy);
+        CHECK(energy > 0);
+        CHECK(std::memcmp(one.data(), two.data(), n * sizeof(Vec3p)) == 0);
+    }
 }
 
 TEST_CASE("rigid motion costs nothing, and inner forces have no resultant and no moment") {
