@@ -93,7 +93,7 @@ std::vector<Vec3> corners_of(const AssembledBody& body, const Field& x) {
     return corners;
 }
 
-Stats stats_of(Assembly& assembly, const Stepper& stepper, const State& state) {
+Stats stats_of(Assembly& assembly, Stepper& stepper, const State& state) {
     Stats stats;
     stats.steps = stepper.steps;
     stats.newton_iterations = stepper.newton_iterations;

@@ -6,7 +6,7 @@
 
 namespace sim {
 
-Stats stats_of(Assembly& assembly, const Stepper& stepper, const State& state);
+Stats stats_of(Assembly& assembly, Stepper& stepper, const State& state);
 
 std::vector<ProbeRow> probes_of(const Scene& scene,
                                 const Assembly& assembly,

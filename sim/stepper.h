@@ -77,7 +77,7 @@ class Stepper {
     const ColliderContact& colliders() const { return colliders_; }
 
     /// Of bodies against each other, to measure how far they are apart, also where contact is on the grid.
-    const SurfaceContact& surfaces() const { return measured_ ? *measured_ : surfaces_; }
+    SurfaceContact& surfaces() { return measured_ ? *measured_ : surfaces_; }
 
     const Prescribed& prescribed() const { return prescribed_; }
 

@@ -327,7 +327,7 @@ bool SurfaceContact::has_changed_touch(const Field& x) const {
     });
 }
 
-SurfaceContact::Report SurfaceContact::report(const Field& x) const {
+SurfaceContact::Report SurfaceContact::report(const Field& x) {
     Report report;
     const Field at_rest(x.size());
     const std::vector<Extent> all = extents(x, at_rest);
@@ -336,8 +336,7 @@ SurfaceContact::Report SurfaceContact::report(const Field& x) const {
         const double margin = reach * b.lattice->edge;
         std::vector<int> vertices;
         if (pair.is_self())
-            vertices = FoldWatch(folds_[pair.of_domains])
-                           .strangers(x);  // a copy, as steps go on with theirs
+            vertices = folds_[pair.of_domains].strangers(x);
         else if (distance(pair, all) <= margin)
             vertices = a.all_vertices();
         for (const ContactPoint& contact : find_contacts(a, vertices, b, x, x, margin)) {

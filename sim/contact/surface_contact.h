@@ -99,7 +99,7 @@ class SurfaceContact : public ContactEnergy {
     };
 
     static constexpr double reach = 1;  // in domain edges
-    Report report(const Field& x) const;
+    Report report(const Field& x);
 
   private:
     struct Contact : ContactPoint {

@@ -330,7 +330,7 @@ TEST_CASE("a linearisation is called linear enough only where a new one differs 
 }
 
 TEST_CASE("what is told of bodies apart or in each other is in domain edges") {
-    const Blocks blocks({});
+    Blocks blocks({});
 
     struct Place {
         double above;  // [domain edges]
