@@ -208,8 +208,10 @@ bool Stepper::take_drift(const State& state, int number, double length) {
 
 double Stepper::longest_way(double length) const {
     // T takes means.
+    if (colliders_.empty())
+        return 0;
     Vec3p squared{};
-    for (int i = 0; i < map_.n_dofs() && !colliders_.empty(); ++i)
+    for (int i = 0; i < map_.n_dofs(); ++i)
         squared = larger(squared, q_moved_[i] * q_moved_[i]);
     return (1 + rounding) * length * std::sqrt(sum_of(squared));
 }
@@ -218,7 +220,7 @@ bool Stepper::drift_with_contact(const State& state,
                                  const Field& x,
                                  int number,
                                  double length) {
-    // Velocities are asked for where something may be met alone, as long as that is not everywhere.
+    // Velocities are asked for only where something may be met, unless that is everywhere.
     const bool sees_all = n_drifts_ == 1 && !surfaces_.empty(),
                has_thin = colliders_.has_thin();
     moved_.resize(x.size());

@@ -395,7 +395,7 @@ ALWAYS_INLINE void take_wave_modulus(
 }  // namespace
 
 bool has_pair_registers() {
-    static const bool has = __builtin_cpu_supports("avx512f");
+    static const bool has = __builtin_cpu_supports("x86-64-v4");
     return has;
 }
 
