@@ -9,7 +9,7 @@ namespace shots {
 namespace {
 
 /// Counts up whenever the same shot file would give other frames for a reason that its words do not show.
-constexpr int simulation_schema = 3;
+constexpr int simulation_schema = 4;
 
 void read_words(const Table& words, Reading& reading, Shot& shot) {
     TableReader picture(words, {1, 1, {}}, "", Decides::Picture, reading);

@@ -12,7 +12,7 @@ namespace sim {
 namespace {
 
 // Begins every checkpoint; counts up where what visit() passes on changes.
-constexpr char format[] = "state 4";
+constexpr char format[] = "state 5";
 
 class Writer {
   public:
@@ -78,7 +78,8 @@ class Reader {
 template <class Archive, class SomeSnapshot>
 void visit(Archive& archive, SomeSnapshot& snapshot) {
     auto& state = snapshot.state;
-    for (auto* number : {&state.time, &state.last_dt, &state.dt_limit, &state.quiet_drifts})
+    for (auto* number :
+         {&state.time, &state.last_dt, &state.dt_limit, &state.quiet_drifts, &state.drift})
         archive.number(*number);
     archive.array(state.contacts);
     archive.array(state.top_speed);

@@ -32,10 +32,9 @@ double sum_of(const Vec3p& v) {
 }  // namespace
 
 double Stepper::stable_limit(std::size_t b) const {
-    const AssembledBody& body = assembly_.bodies[b];
-    if (body.points)
+    if (const AssembledBody& body = assembly_.bodies[b]; body.points)
         return safety_of_points * 2 / points_[b]->highest_frequency(body.kernel);
-    return safety * 2 / (body.highest_frequency * std::sqrt(stiffening_[b]));
+    return safety * 2 / (highest_frequency_[b] * std::sqrt(stiffening_[b]));
 }
 
 double Stepper::stable_limit() const {

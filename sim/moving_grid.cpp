@@ -1,10 +1,18 @@
 // A grid that moves along with bodies: its map is kept until pins change.
 #include "assets/base/error.h"
+#include "sim/mapped_frequency.h"
 #include "sim/stepper.h"
 
 #include <algorithm>
 
 namespace sim {
+
+namespace {
+
+// Of the frequency of corners, at least: near the limit of modes that move much, drifts ripple the energy.
+constexpr double least_slowed = 0.9;
+
+}  // namespace
 
 void Stepper::keep_map(State& state, const Field& x_hat) {
     // Corners keep their cells, so which of them are free changes with the pins alone.
@@ -46,6 +54,7 @@ void Stepper::renew_map(State& state) {
     grid.free = free_;
     grid.held = prescribed_.corners;
     map_.rebuild(grid.made_at, free_, ranges_);
+    measure_frequencies(changes);
 
     // Nodes of other bodies keep what they have.
     const auto nodes_of = [&](const Field& dofs, const Field& kept) {
@@ -63,6 +72,22 @@ void Stepper::renew_map(State& state) {
     grid.v = nodes_of(q_n_, grid.v);
     grid.x_before.clear();
     grid.v_before.clear();
+}
+
+void Stepper::measure_frequencies(const std::vector<char>& changes) {
+    for (std::size_t b = 0; b < ranges_.size(); ++b) {
+        const CornerMap::Slaves slaves = map_.slaves_of(static_cast<int>(b));
+        if (!changes[b] || scene_.solver.steps != Steps::Explicit)
+            continue;
+        AssembledBody& body = assembly_.bodies[b];
+        highest_frequency_[b] = body.highest_frequency;
+        if (body.method == Method::Enriched && slaves.begin < slaves.end)
+            highest_frequency_[b] *= std::max(
+                least_slowed,
+                highest_frequency(
+                    *body.elasticity, body.lattice, map_, static_cast<int>(b), body.begin)
+                    / body.highest_frequency);
+    }
 }
 
 void Stepper::place_nodes(const State& state, const Field& x_hat) {
@@ -129,6 +154,7 @@ void Stepper::restore_map(const State& state) {
     if (!moves_grid_)
         return;
     map_.rebuild(state.grid.made_at, state.grid.free, ranges_);
+    measure_frequencies(std::vector<char>(ranges_.size(), 1));
     assets::check(static_cast<int>(state.grid.x.size()) == map_.n_dofs() - map_.n_free(),
                   "checkpoint has the nodes of its map");
     lift(state, state.x, state.v);  // mass

@@ -47,6 +47,7 @@ struct State {
     double dt_limit = std::numeric_limits<
         double>::infinity();    // what failed and unstable steps left of dt [s]
     double quiet_drifts = 1e6;  // of explicit steps since bodies last touched each other
+    double drift = 0;           // of the last explicit step; 0 before the first [s]
 };
 
 }  // namespace sim

@@ -15,6 +15,7 @@ constexpr double growth = 1.1;      // of a step after one that succeeded
 constexpr double shortest = 1e-3;   // step worth trying, as a share of dt
 constexpr double most_steps = 1e8;  // to one end: days, or for ever where time hardly moves
 constexpr double rounding = 1e-6;   // of a number of steps
+constexpr double least_kept = 0.7;  // of the longest drift: one that is no shorter goes on
 constexpr int life_of_map = 8;      // of one that explicit drifts share, at most, in dt
 constexpr double cells_under_map = 0.1;  // that a slaved corner may pass meanwhile
 constexpr int quiet_per_drift = 2;       // since the last touch, for each drift of a step
@@ -45,13 +46,16 @@ void Stepper::advance(State& state,
 
 void Stepper::go_on(State& state, double end, double dt) {
     const bool is_explicit = scene_.solver.steps == Steps::Explicit;
-    // Equal steps to the end, so that the last one is no sliver.
     const double remaining = end - state.time;
     const SurfaceContact::Start start = {state.x, state.v, state.top_speed, state.contacts};
     surfaces_.see(start);
     const double stable =
         is_explicit ? std::min({dt, limit_of_way(cells_per_step), stable_limit()}) : dt;
-    const double drift = std::min(stable, state.dt_limit);
+    const double longest_drift = std::min(stable, state.dt_limit);
+    // Drifts that are near the limit of what is stable heat what swings fastest wherever they change: they do so seldom.
+    const bool goes_on =
+        is_explicit && state.drift <= longest_drift && state.drift > least_kept * longest_drift;
+    double drift = goes_on ? state.drift : longest_drift;
     if (is_explicit) {
         prescribe(scene_, assembly_, state.time, state.time + drift, prescribed_);
         make_map(state, state.x);
@@ -62,16 +66,22 @@ void Stepper::go_on(State& state, double end, double dt) {
                   colliders_.largest_step(state.x, state.v, state.time, longest),
                   surfaces_.largest_step(start, longest),
                   relative_limit(state)});
-    const double n = std::max(1.0, std::ceil(remaining / allowed - rounding));
-    const double length = remaining / n,
-                 n_drifts = std::max(1.0, std::ceil(length / drift - rounding));
-    if (!(n * n_drifts <= most_steps))
-        refuse_steps(state, n * n_drifts, length / n_drifts);
-    n_drifts_ = static_cast<int>(n_drifts);
+    // Equal drifts to the end, so that the last one is no sliver, in steps of as many.
+    const double n_left =
+        std::max(1.0, std::ceil(remaining / std::min(drift, allowed) - rounding));
+    if (!(n_left <= most_steps))
+        refuse_steps(state, n_left, remaining / n_left);
+    drift = remaining / n_left;
+    const double n_steps =
+        is_explicit ? std::ceil(n_left / std::max(1.0, std::floor(allowed / drift + rounding)))
+                    : n_left;
+    n_drifts_ = static_cast<int>(std::ceil(n_left / n_steps));
+    const double length = n_drifts_ * drift;
     if (try_step(state, length)) {
         ++steps;
         state.dt_limit *= std::pow(growth, n_drifts_);
-        if (n == 1)
+        state.drift = drift;
+        if (n_drifts_ == n_left)
             state.time = end;
         return;
     }

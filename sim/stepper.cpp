@@ -65,6 +65,8 @@ Stepper::Stepper(const Scene& scene, Assembly& assembly)
     moves_grid_ = scene.contact.mode == Contact::Mode::Surface
                   && scene.solver.transfer == Transfer::Flip && !scene.solver.enrich.strain
                   && scene.solver.steps != Steps::Static && !has_points_;
+    for (const AssembledBody& body : assembly.bodies)
+        highest_frequency_.push_back(body.highest_frequency);
     for (std::size_t b = 0; b < points_.size(); ++b)
         if (!points_[b])
             bodies_of_domains_.push_back(static_cast<int>(b));

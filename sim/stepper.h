@@ -29,8 +29,9 @@ class Stepper {
     /// Steps by solver.steps until state.time is `end`, in steps no longer than dt, nor than failures and stability
     /// allow: a step that fails is halved, and grows back slowly. Explicit steps are longer while no surfaces touch: kicks
     /// and drifts, no longer than that, are repeated under one map T as long as no slaved corner goes far in the cells of
-    /// the grid. `watch` is told how far it has come, after each step and on the way of each solve, and may throw. Throws
-    /// Error(Diverged) where halving does not help.
+    /// the grid; their length changes only where it must, or where much longer ones are stable. `watch` is told how far it
+    /// has come, after each step and on the way of each solve, and may throw. Throws Error(Diverged) where halving does not
+    /// help.
     void advance(State& state,
                  double end,
                  double dt,
@@ -127,6 +128,7 @@ class Stepper {
     void keep_map(State& state, const Field& x_hat);
     bool has_other_pins(int body, const MovingGrid& grid) const;
     void renew_map(State& state);
+    void measure_frequencies(const std::vector<char>& changes);
     void place_nodes(const State& state, const Field& x_hat);
     void add_lifted(const State& state, const Field& end, const Field& start, Field& nodes);
     void end_grid(State& state);
@@ -290,6 +292,8 @@ class Stepper {
     Field v_end_;                    // (#C) and how fast, of explicit steps [m/s]
     std::vector<double> speed_;      // (#bodies) of the fastest corner [m/s]
     Field gradient_, end_gradient_;  // of explicit steps, at the start and the end (#C) [N]
+    // (#bodies) That explicit steps have to follow at rest, of bodies of domains: under a map that stays, what it lets through.
+    std::vector<double> highest_frequency_;
     // (#bodies) ElasticEnergy::stiffening() at the last measure.
     std::vector<double> stiffening_;
     // Drifts: since then, and until the next.

@@ -1,6 +1,7 @@
 // Explicit steps of several drifts under one map.
 #include "sim/simulation.h"
 #include "tests/support/bar_scene.h"
+#include "tests/support/box_body.h"
 #include "tests/support/soft_block.h"
 
 #include <catch2/catch.hpp>
@@ -14,7 +15,6 @@ constexpr double frame = 9e-3;          // [s]
 constexpr double longest = frame / 8;   // dt: there is time for two drifts in it
 constexpr int n_drifts = 16;            // in a frame: of 0.56 ms, the bar is stable at 0.6
 constexpr int n_drifts_of_points = 22;  // of 0.41 ms, the bar is stable at 0.43
-constexpr int n_steps = 2;              // in a frame, as a map serves for 8 dt at most
 
 tests::BarOptions bar(sim::Method method, double dt) {
     tests::BarOptions options;
@@ -34,13 +34,15 @@ TEST_CASE(
     sim::Simulation longer(scene, frame), shorter(scene, frame);
     for (int k = 1; k <= 5; ++k) {
         longer.advance_to(frame * k);
+        const int n = n_drifts / longer.stats().steps;  // of the last step
+        REQUIRE(n * longer.stats().steps == n_drifts);
+        REQUIRE(n > 1);
         Vec3 pull{0, 0, 0};
         for (int drift = 1; drift <= n_drifts; ++drift) {
             shorter.advance_to(frame * (k - 1 + double(drift) / n_drifts));
-            if (drift > n_drifts - n_drifts / n_steps)
-                pull += shorter.pins()[0].force / (n_drifts / n_steps);
+            if (drift > n_drifts - n)
+                pull += shorter.pins()[0].force / n;
         }
-        REQUIRE(longer.stats().steps == n_steps);
         const Vec3 tip = shorter.probes()[0].position;
         CHECK((longer.probes()[0].position - tip).norm() < 1e-11);
         CHECK((longer.pins()[0].force - pull).norm() < 1e-6 * pull.norm());
@@ -267,7 +269,8 @@ TEST_CASE("cubes that meet in the middle of a long explicit step stay out of eac
 
 TEST_CASE("a block that is pressed or pulled far, slowly, and let go gains no energy",
           "[drifts]") {
-    // It stiffens, by more than twice the square of its highest frequency at rest: drifts must get shorter in time.
+    // It stiffens, by more than twice the square of its highest frequency at rest: drifts must get shorter in time. What
+    // velocity Verlet keeps is not quite the energy: near the limit that ripples by some thousandths.
     const double factor = GENERATE(0.7, 0.5, 2.0), side = 0.3, duration = 0.3;
     const sim::Model model = GENERATE(sim::Model::NeoHookean, sim::Model::StableNeoHookean);
     const sim::Method method = GENERATE(sim::Method::Fem, sim::Method::Domains);
@@ -287,9 +290,39 @@ TEST_CASE("a block that is pressed or pulled far, slowly, and let go gains no en
     const double stored = tests::energy(simulation.stats());
     for (int k = 1; k <= 30; ++k) {
         simulation.advance_to(duration * (1 + k / 30.0));
-        CHECK(tests::energy(simulation.stats()) < stored * (1 + 1e-6));
+        CHECK(tests::energy(simulation.stats()) < 1.01 * stored);
     }
     CHECK(tests::energy(simulation.stats()) > 0.9 * stored);
+}
+
+TEST_CASE("drifts that follow how stiff a body is as it swings do not heat it", "[drifts]") {
+    // Both halves together swing thirty times, pressed so far that the longest stable drift is another one all the time.
+    const sim::Model model = GENERATE(sim::Model::NeoHookean, sim::Model::StableNeoHookean);
+    const sim::Method method =
+        GENERATE(sim::Method::Fem, sim::Method::Enriched, sim::Method::Domains);
+    CAPTURE(int(model), int(method));
+    const double side = 0.3, duration = 0.3;
+    sim::Scene scene;
+    scene.solver = bar(method, 10e-3).solver;
+    scene.bodies = {tests::soft_block("block", {0, 0, 0}, Vec3::Constant(side), side / 6, 1e5)};
+    scene.bodies[0].regions.push_back(
+        tests::region("softer", tests::behind({0, 0, side / 2}, Vec3(0, 0, 1)), 0.5e5));
+    for (sim::Region& region : scene.bodies[0].regions)
+        region.model = model;
+    sim::Pin top = tests::foot_of("block");
+    top.name = "top";
+    top.select.is = sim::Selector::HalfSpace{{0, 0, 0.999 * side}, {0, 0, -1}};
+    top.moves = sim::Pin::Velocity{{0, 0, -0.3 * side / duration}};
+    top.until = duration;
+    scene.pins = {tests::foot_of("block"), top};
+    sim::Simulation simulation(scene, frame);
+    simulation.advance_to(duration);
+    const double stored = tests::energy(simulation.stats());
+    for (int k = 1; k <= 30; ++k) {
+        simulation.advance_to(duration + k / 24.0);
+        CHECK(tests::energy(simulation.stats()) < 1.01 * stored);
+    }
+    CHECK(tests::energy(simulation.stats()) > 0.95 * stored);
 }
 
 TEST_CASE("a body that is flung at another within a long explicit step stays out of it",
