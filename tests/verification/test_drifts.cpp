@@ -24,6 +24,22 @@ tests::BarOptions bar(sim::Method method, double dt) {
     return options;
 }
 
+constexpr double side = 0.3, duration = 0.3;  // of a block and of its pressing
+
+/// A block whose top is brought to `factor` of its height, and let go.
+sim::Scene pressed_block(sim::Method method, double factor) {
+    sim::Scene scene;
+    scene.solver = bar(method, 10e-3).solver;
+    scene.bodies = {tests::soft_block("block", {0, 0, 0}, Vec3::Constant(side), side / 6, 1e5)};
+    sim::Pin top = tests::foot_of("block");
+    top.name = "top";
+    top.select.is = sim::Selector::HalfSpace{{0, 0, 0.999 * side}, {0, 0, -1}};
+    top.moves = sim::Pin::Velocity{{0, 0, (factor - 1) * side / duration}};
+    top.until = duration;
+    scene.pins = {tests::foot_of("block"), top};
+    return scene;
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -271,20 +287,12 @@ TEST_CASE("a block that is pressed or pulled far, slowly, and let go gains no en
           "[drifts]") {
     // It stiffens, by more than twice the square of its highest frequency at rest: drifts must get shorter in time. What
     // velocity Verlet keeps is not quite the energy: near the limit that ripples by some thousandths.
-    const double factor = GENERATE(0.7, 0.5, 2.0), side = 0.3, duration = 0.3;
+    const double factor = GENERATE(0.7, 0.5, 2.0);
     const sim::Model model = GENERATE(sim::Model::NeoHookean, sim::Model::StableNeoHookean);
     const sim::Method method = GENERATE(sim::Method::Fem, sim::Method::Domains);
     CAPTURE(factor, int(model), int(method));
-    sim::Scene scene;
-    scene.solver = bar(method, 10e-3).solver;
-    scene.bodies = {tests::soft_block("block", {0, 0, 0}, Vec3::Constant(side), side / 6, 1e5)};
+    sim::Scene scene = pressed_block(method, factor);
     scene.bodies[0].regions[0].model = model;
-    sim::Pin top = tests::foot_of("block");
-    top.name = "top";
-    top.select.is = sim::Selector::HalfSpace{{0, 0, 0.999 * side}, {0, 0, -1}};
-    top.moves = sim::Pin::Velocity{{0, 0, (factor - 1) * side / duration}};
-    top.until = duration;
-    scene.pins = {tests::foot_of("block"), top};
     sim::Simulation simulation(scene, frame);
     simulation.advance_to(duration);
     const double stored = tests::energy(simulation.stats());
@@ -301,20 +309,11 @@ TEST_CASE("drifts that follow how stiff a body is as it swings do not heat it", 
     const sim::Method method =
         GENERATE(sim::Method::Fem, sim::Method::Enriched, sim::Method::Domains);
     CAPTURE(int(model), int(method));
-    const double side = 0.3, duration = 0.3;
-    sim::Scene scene;
-    scene.solver = bar(method, 10e-3).solver;
-    scene.bodies = {tests::soft_block("block", {0, 0, 0}, Vec3::Constant(side), side / 6, 1e5)};
+    sim::Scene scene = pressed_block(method, 0.7);
     scene.bodies[0].regions.push_back(
         tests::region("softer", tests::behind({0, 0, side / 2}, Vec3(0, 0, 1)), 0.5e5));
     for (sim::Region& region : scene.bodies[0].regions)
         region.model = model;
-    sim::Pin top = tests::foot_of("block");
-    top.name = "top";
-    top.select.is = sim::Selector::HalfSpace{{0, 0, 0.999 * side}, {0, 0, -1}};
-    top.moves = sim::Pin::Velocity{{0, 0, -0.3 * side / duration}};
-    top.until = duration;
-    scene.pins = {tests::foot_of("block"), top};
     sim::Simulation simulation(scene, frame);
     simulation.advance_to(duration);
     const double stored = tests::energy(simulation.stats());
